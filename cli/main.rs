@@ -1,0 +1,2 @@
+//! The `kirk` binary.
+fn main() {}

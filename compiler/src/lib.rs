@@ -1,0 +1,1 @@
+//! RMPL source to a delay STNU, or diagnostics.

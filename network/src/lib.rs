@@ -1,0 +1,7 @@
+//! Temporal networks with uncertainty and observation delay.
+
+pub mod model;
+pub mod time;
+
+pub use model::{ContingentLink, Delay, Event, EventId, ModelError, Name, Network, Requirement};
+pub use time::{Bound, Duration, ParseDurationError, Time};

@@ -151,12 +151,15 @@ impl Network {
         &names.iter().find(|name| !name.internal).unwrap_or(&names[0]).text
     }
 
-    /// The event a name means, whichever of its names it is: any case, and the original's `+SHOWER::START+`.
+    /// The event a name means, whichever of its names it is: as written, else in any case, else in the original's
+    /// spelling `+SHOWER::START+`.
     pub fn find(&self, name: &str) -> Option<EventId> {
+        let position = |matches: &dyn Fn(&str) -> bool| {
+            self.events.iter().position(|event| event.names.iter().any(|n| matches(&n.text)))
+        };
         let wanted = normal_name(name);
-        let position = self.events.iter().position(|event| event.names.iter().any(|n| n.text == wanted));
-        position
-            .or_else(|| self.events.iter().position(|event| event.names.iter().any(|n| n.text == name)))
+        position(&|text| text == name)
+            .or_else(|| position(&|text| text.to_lowercase() == wanted))
             .map(|index| EventId(index as u32))
     }
 

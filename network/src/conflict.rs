@@ -1,0 +1,47 @@
+//! Why a network is not controllable: a semi-reducible negative cycle, in terms of the constraints a user wrote.
+
+use crate::time::Duration;
+
+/// The constraints that cannot all be honoured, whatever strategy is tried.
+///
+/// The proof is arithmetic: going round the cycle each member contributes its signed `amount`, and the amounts add up
+/// to `total`, which is negative. So in the worst case that much time is missing.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Conflict {
+    /// The members in the order of the network: requirements first, then links; each part at most once.
+    pub members: Vec<Share>,
+    /// The sum of the amounts, always negative (`-21 s` reads: 21 s too little).
+    pub total: Duration,
+    /// True if a cleverer use of the news of a delayed chain might still find a strategy; see `reduce`.
+    pub conservative: bool,
+}
+
+/// What one part of one constraint contributes to a conflict.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Share {
+    /// The constraint.
+    pub part: Part,
+    /// How many times the cycle uses it (more than once is rare but possible).
+    pub times: u32,
+    /// Its contribution in all: `times` times the bound, with the sign given at [`Part`].
+    pub amount: Duration,
+}
+
+/// One bound of one constraint. Indices are those of [`crate::Network::requirements`] and [`crate::Network::contingents`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Part {
+    /// The upper bound of a requirement: contributes `+upper`.
+    RequirementUpper(usize),
+    /// The lower bound of a requirement: contributes `-lower`.
+    RequirementLower(usize),
+    /// Nature may take the least: contributes `+lower`.
+    LinkLower(usize),
+    /// Nature may take the most: contributes `-upper`.
+    LinkUpper(usize),
+    /// The news may be early: contributes `+min`.
+    DelayMin(usize),
+    /// The news may be late: contributes `-max`.
+    DelayMax(usize),
+    /// No event comes before the origin: contributes nothing.
+    AfterOrigin,
+}

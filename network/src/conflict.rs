@@ -44,4 +44,6 @@ pub enum Part {
     DelayMax(usize),
     /// No event comes before the origin: contributes nothing.
     AfterOrigin,
+    /// A [0, 0] requirement by which merging made two events one: contributes nothing, but the conflict rests on it.
+    Join(usize),
 }

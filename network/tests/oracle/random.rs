@@ -87,13 +87,13 @@ impl Shape {
     /// Small enough for the game, without delays and chains.
     pub fn tiny() -> Shape {
         Shape {
-            executables: 1..=4,
+            executables: 1..=5,
             links: 1..=3,
-            density: 60..=150,
-            horizon: 6,
-            lower: 3,
-            spread: 3,
-            slack: 4,
+            density: 60..=140,
+            horizon: 8,
+            lower: 4,
+            spread: 4,
+            slack: 8,
             chain: 0,
             fixed: 0,
             variable: 0,
@@ -105,7 +105,7 @@ impl Shape {
 
     /// Small enough for the game, with all kinds of delays, without chains.
     pub fn tiny_delayed() -> Shape {
-        Shape { fixed: 20, variable: 35, infinite: 10, delay: 3, slack: 5, links: 1..=2, ..Shape::tiny() }
+        Shape { fixed: 20, variable: 40, infinite: 10, delay: 4, slack: 9, ..Shape::tiny() }
     }
 
     /// A few dozen events: too large for the game, not for the closure.
@@ -117,7 +117,7 @@ impl Shape {
             horizon: 60,
             lower: 8,
             spread: 8,
-            slack: 25,
+            slack: 40,
             ..Shape::tiny()
         }
     }
@@ -263,6 +263,29 @@ pub fn with_delays(network: &Network, delay: Delay) -> Network {
         link.delay = delay;
     }
     with(network, network.requirements().to_vec(), contingents)
+}
+
+/// The same network with its events, requirements and links in another order.
+pub fn reordered(random: &mut Random, network: &Network) -> Network {
+    let mut number: Vec<u32> = (0..network.events().len() as u32).collect();
+    random.shuffle(&mut number);
+    let id = |event: EventId| EventId(number[event.index()]);
+    let mut events = network.events().to_vec();
+    for event in network.event_ids() {
+        events[id(event).index()] = network.events()[event.index()].clone();
+    }
+    let mut requirements: Vec<Requirement> = network.requirements().to_vec();
+    for requirement in &mut requirements {
+        (requirement.from, requirement.to) = (id(requirement.from), id(requirement.to));
+    }
+    let mut contingents: Vec<ContingentLink> = network.contingents().to_vec();
+    for link in &mut contingents {
+        (link.from, link.to) = (id(link.from), id(link.to));
+    }
+    random.shuffle(&mut requirements);
+    random.shuffle(&mut contingents);
+    Network::new(network.name().to_string(), id(network.origin()), events, requirements, contingents)
+        .expect("a valid network")
 }
 
 /// A harder network: one link, delay or requirement changed so that Nature can do more, or we may do less.

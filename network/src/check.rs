@@ -1,0 +1,192 @@
+//! The verdict: is a network variable-delay controllable, and if not, why not.
+
+use std::collections::BTreeSet;
+
+use crate::conflict::{Conflict, Part, Share};
+use crate::controllability::{is_controllable, negative_cycle};
+use crate::merge::merge;
+use crate::model::{ContingentLink, Delay, Event, EventId, Network, Requirement};
+use crate::reduce::{ReduceError, Reduction, reduce};
+use crate::stnu::TooLarge;
+use crate::time::Bound;
+
+/// The answer of [`check`].
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Whatever Nature does, there is always something to do that keeps every requirement.
+    Controllable,
+    /// There is not, and these constraints prove it.
+    Uncontrollable(Conflict),
+}
+
+/// Decides variable-delay controllability: merge, reduce, search; a conflict in terms of `network` for every "no".
+///
+/// Strong controllability is the case of infinite delays, dynamic controllability that of none.
+///
+/// # Errors
+/// [`TooLarge`] if the durations add up to more than 64-bit microseconds can hold.
+pub fn check(network: &Network) -> Result<Verdict, TooLarge> {
+    let merged = merge(network);
+    Ok(match reduce(&merged.network) {
+        Err(ReduceError::TooLarge) => return Err(TooLarge),
+        Ok(reduction) if is_controllable(&reduction.stnu)? => Verdict::Controllable,
+        reduction => match explain(&merged.network, reduction)? {
+            Some(conflict) => Verdict::Uncontrollable(merged.unmerge(&conflict, network)),
+            None => unreachable!("the search that keeps records takes the same way as the one that does not"),
+        },
+    })
+}
+
+/// A minimal conflict of a merged network, `None` if it is controllable.
+pub fn conflict(merged: &Network) -> Result<Option<Conflict>, TooLarge> {
+    explain(merged, reduce(merged))
+}
+
+fn explain(
+    network: &Network,
+    reduction: Result<Reduction, ReduceError>,
+) -> Result<Option<Conflict>, TooLarge> {
+    Ok(match first_conflict(network, reduction)? {
+        Some(conflict) => Some(minimise(network, conflict)?),
+        None => None,
+    })
+}
+
+fn first_conflict(
+    network: &Network,
+    reduction: Result<Reduction, ReduceError>,
+) -> Result<Option<Conflict>, TooLarge> {
+    match reduction {
+        Err(ReduceError::TooLarge) => Err(TooLarge),
+        Err(ReduceError::Never(conflict)) => Ok(Some(conflict)),
+        Ok(reduction) => match negative_cycle(&reduction.stnu)? {
+            None => Ok(None),
+            Some(cycle) => reduction.conflict(network, &cycle).map(Some),
+        },
+    }
+}
+
+/// Beyond this many members a conflict is left as it was found; trying each one out would take long.
+const MOST_MEMBERS_TO_TRY: usize = 200;
+
+/// One thing that can be taken out of a conflict.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Member {
+    Upper(usize),
+    Lower(usize),
+    Link(usize),
+}
+
+fn members(conflict: &Conflict) -> BTreeSet<Member> {
+    let member = |share: &Share| match share.part {
+        Part::RequirementUpper(index) => Some(Member::Upper(index)),
+        Part::RequirementLower(index) => Some(Member::Lower(index)),
+        Part::LinkLower(index) | Part::LinkUpper(index) | Part::DelayMin(index) | Part::DelayMax(index) => {
+            Some(Member::Link(index))
+        }
+        Part::AfterOrigin | Part::Join(_) => None,
+    };
+    conflict.members.iter().filter_map(member).collect()
+}
+
+/// Takes out members one by one as long as the rest is still a conflict.
+fn minimise(network: &Network, found: Conflict) -> Result<Conflict, TooLarge> {
+    let mut kept = members(&found);
+    // What is left of the network if only the members are kept may be too little: Nature's links can be needed for
+    // more than their bounds. Then the conflict stays as found.
+    let Some(mut smallest) = restricted_conflict(network, &kept)? else { return Ok(found) };
+    kept = members(&smallest);
+    if kept.len() <= MOST_MEMBERS_TO_TRY {
+        for member in kept.clone().into_iter().rev() {
+            if !kept.contains(&member) {
+                continue;
+            }
+            let mut fewer = kept.clone();
+            fewer.remove(&member);
+            if let Some(conflict) = restricted_conflict(network, &fewer)? {
+                kept = members(&conflict);
+                smallest = conflict;
+            }
+        }
+    }
+    if smallest.conservative {
+        // With the same news at once, is it still impossible? Then the delayed chain is not the reason.
+        let at_once = Restriction::new(network, &kept, Some(Delay::NONE));
+        smallest.conservative = first_conflict(&at_once.network, reduce(&at_once.network))?.is_none();
+    }
+    Ok(smallest)
+}
+
+fn restricted_conflict(network: &Network, members: &BTreeSet<Member>) -> Result<Option<Conflict>, TooLarge> {
+    let restriction = Restriction::new(network, members, None);
+    let conflict = first_conflict(&restriction.network, reduce(&restriction.network))?;
+    Ok(conflict.map(|conflict| restriction.back(conflict)))
+}
+
+/// A network of some members only, over the events they touch.
+struct Restriction {
+    network: Network,
+    requirement_of: Vec<usize>,
+    contingent_of: Vec<usize>,
+}
+
+impl Restriction {
+    fn new(network: &Network, members: &BTreeSet<Member>, delay: Option<Delay>) -> Restriction {
+        let mut new_id = vec![None; network.events().len()];
+        let mut events: Vec<Event> = Vec::new();
+        let mut id = |event: EventId| {
+            *new_id[event.index()].get_or_insert_with(|| {
+                events.push(network.events()[event.index()].clone());
+                EventId(events.len() as u32 - 1)
+            })
+        };
+        let origin = id(network.origin());
+        let mut requirements = Vec::new();
+        let mut requirement_of = Vec::new();
+        let mut contingents = Vec::new();
+        let mut contingent_of = Vec::new();
+        for &member in members {
+            match member {
+                Member::Upper(index) | Member::Lower(index) => {
+                    let whole = network.requirements()[index];
+                    let (mut lower, mut upper) = (Bound::Infinite, Bound::Infinite);
+                    match member {
+                        Member::Upper(_) => upper = whole.upper,
+                        _ => lower = whole.lower,
+                    }
+                    requirements.push(Requirement { from: id(whole.from), to: id(whole.to), lower, upper });
+                    requirement_of.push(index);
+                }
+                Member::Link(index) => {
+                    let link = network.contingents()[index];
+                    contingents.push(ContingentLink {
+                        from: id(link.from),
+                        to: id(link.to),
+                        delay: delay.unwrap_or(link.delay),
+                        ..link
+                    });
+                    contingent_of.push(index);
+                }
+            }
+        }
+        let network = Network::new(network.name().to_string(), origin, events, requirements, contingents)
+            .unwrap_or_else(|errors| unreachable!("part of a valid network is valid: {errors:?}"));
+        Restriction { network, requirement_of, contingent_of }
+    }
+
+    fn back(&self, conflict: Conflict) -> Conflict {
+        let part = |part| match part {
+            Part::RequirementUpper(index) => Part::RequirementUpper(self.requirement_of[index]),
+            Part::RequirementLower(index) => Part::RequirementLower(self.requirement_of[index]),
+            Part::LinkLower(index) => Part::LinkLower(self.contingent_of[index]),
+            Part::LinkUpper(index) => Part::LinkUpper(self.contingent_of[index]),
+            Part::DelayMin(index) => Part::DelayMin(self.contingent_of[index]),
+            Part::DelayMax(index) => Part::DelayMax(self.contingent_of[index]),
+            other => other,
+        };
+        let mut members: Vec<Share> =
+            conflict.members.iter().map(|share| Share { part: part(share.part), ..*share }).collect();
+        members.sort_by_key(|share| share.part);
+        Conflict { members, ..conflict }
+    }
+}

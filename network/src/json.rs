@@ -1,0 +1,382 @@
+//! The network file `kirk-network/1`: seconds in decimal, exact to a microsecond, nothing unknown.
+
+use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
+use serde::ser::{SerializeMap, SerializeSeq, Serializer};
+use serde::{Deserialize, Serialize};
+use serde_json::value::RawValue;
+
+use crate::model::{ContingentLink, Delay, Event, EventId, ModelError, Name, Network, Requirement};
+use crate::time::{Bound, Duration};
+
+/// The `format` of the files read and written here.
+pub const FORMAT: &str = "kirk-network/1";
+
+/// What is wrong with a network file, and where.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ReadProblem {
+    /// Byte offset into the text.
+    pub offset: usize,
+    /// What was expected, what is there, and which element it is in (`requirements[3]`).
+    pub message: String,
+}
+
+/// Reads a network file, or lists everything that is wrong with it.
+pub fn read(text: &str) -> Result<Network, Vec<ReadProblem>> {
+    let file: FileText =
+        serde_json::from_str(text).map_err(|error| vec![problem(text, 0, "", text, &error)])?;
+    let mut reader = Reader { text, problems: Vec::new() };
+    let network = reader.network(&file);
+    match network {
+        Some(network) if reader.problems.is_empty() => Ok(network),
+        _ => Err(reader.problems),
+    }
+}
+
+/// Writes a network as one line of JSON that reads back equal (except that every name counts as a user's).
+pub fn write(network: &Network) -> String {
+    serde_json::to_string(&Document(network))
+        .unwrap_or_else(|error| unreachable!("a network has only strings and numbers: {error}"))
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileText<'a> {
+    #[serde(borrow)]
+    format: &'a RawValue,
+    #[serde(default)]
+    name: String,
+    #[serde(borrow, default)]
+    time_unit: Option<&'a RawValue>,
+    #[serde(borrow)]
+    origin: &'a RawValue,
+    #[serde(borrow)]
+    events: Vec<&'a RawValue>,
+    #[serde(borrow, default)]
+    requirements: Vec<&'a RawValue>,
+    #[serde(borrow, default)]
+    contingents: Vec<&'a RawValue>,
+}
+
+struct EventText {
+    id: String,
+    names: Vec<String>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RequirementText {
+    from: String,
+    to: String,
+    #[serde(default)]
+    lower: Option<Seconds>,
+    #[serde(default)]
+    upper: Option<Seconds>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ContingentText {
+    from: String,
+    to: String,
+    lower: Seconds,
+    upper: Seconds,
+    #[serde(default)]
+    delay: Option<(Seconds, Option<Seconds>)>,
+}
+
+/// A JSON number read digit by digit.
+#[derive(Clone, Copy)]
+struct Seconds(Duration);
+
+impl<'de> Deserialize<'de> for Seconds {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Seconds, D::Error> {
+        let raw: &RawValue = <&RawValue>::deserialize(deserializer)?;
+        let text = raw.get();
+        Duration::parse_seconds(text)
+            .map(Seconds)
+            .map_err(|error| D::Error::custom(format!("`{text}`: {error}")))
+    }
+}
+
+impl<'de> Deserialize<'de> for EventText {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<EventText, D::Error> {
+        struct EventVisitor;
+        impl<'de> Visitor<'de> for EventVisitor {
+            type Value = EventText;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                write!(f, "an event: a name, or {{\"id\": name, \"names\": [name, ...]}}")
+            }
+
+            fn visit_str<E>(self, id: &str) -> Result<EventText, E> {
+                Ok(EventText { id: id.to_string(), names: Vec::new() })
+            }
+
+            fn visit_map<M: MapAccess<'de>>(self, map: M) -> Result<EventText, M::Error> {
+                #[derive(Deserialize)]
+                #[serde(deny_unknown_fields)]
+                struct Fields {
+                    id: String,
+                    #[serde(default)]
+                    names: Vec<String>,
+                }
+                let Fields { id, names } =
+                    Fields::deserialize(serde::de::value::MapAccessDeserializer::new(map))?;
+                Ok(EventText { id, names })
+            }
+        }
+        deserializer.deserialize_any(EventVisitor)
+    }
+}
+
+struct Reader<'a> {
+    text: &'a str,
+    problems: Vec<ReadProblem>,
+}
+
+impl<'a> Reader<'a> {
+    fn network(&mut self, file: &FileText<'a>) -> Option<Network> {
+        if let Some(format) = self.element::<String>("format", file.format)
+            && format != FORMAT
+        {
+            self.problem(file.format, format!("the format is `{format}`; this kirk reads `{FORMAT}`"));
+        }
+        if let Some(raw) = file.time_unit
+            && let Some(unit) = self.element::<String>("time_unit", raw)
+            && unit != "s"
+        {
+            self.problem(raw, format!("the time unit is `{unit}`; kirk networks are in seconds, `s`"));
+        }
+        let mut events = Vec::new();
+        let mut index: std::collections::BTreeMap<String, EventId> = std::collections::BTreeMap::new();
+        for (at, raw) in file.events.iter().enumerate() {
+            let Some(event) = self.element::<EventText>(&format!("events[{at}]"), raw) else { continue };
+            let id = EventId(events.len() as u32);
+            let mut names = vec![event.id];
+            names.extend(event.names.into_iter().filter(|name| *name != names[0]).collect::<Vec<_>>());
+            for name in &names {
+                if index.insert(name.clone(), id).is_some() {
+                    self.problem(raw, format!("events[{at}]: the name `{name}` is used already"));
+                }
+            }
+            let names = names.into_iter().map(|text| Name { text, internal: false }).collect();
+            events.push(Event { names });
+        }
+        let find = |reader: &mut Reader<'a>, raw: &'a RawValue, element: &str, name: &str| {
+            let found = index.get(name).copied();
+            if found.is_none() {
+                let near = nearest(name, index.keys());
+                let help = near.map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+                reader.problem(raw, format!("{element}: there is no event `{name}`{help}"));
+            }
+            found
+        };
+        let origin = self.element::<String>("origin", file.origin);
+        let origin = origin.and_then(|name| find(self, file.origin, "origin", &name));
+        let mut requirements = Vec::new();
+        for (at, raw) in file.requirements.iter().enumerate() {
+            let element = format!("requirements[{at}]");
+            let Some(requirement) = self.element::<RequirementText>(&element, raw) else { continue };
+            let from = find(self, raw, &element, &requirement.from);
+            let to = find(self, raw, &element, &requirement.to);
+            let bound = |seconds: Option<Seconds>| seconds.map_or(Bound::Infinite, |s| Bound::Finite(s.0));
+            if let (Some(from), Some(to)) = (from, to) {
+                let (lower, upper) = (bound(requirement.lower), bound(requirement.upper));
+                requirements.push(Requirement { from, to, lower, upper });
+            }
+        }
+        let mut contingents = Vec::new();
+        for (at, raw) in file.contingents.iter().enumerate() {
+            let element = format!("contingents[{at}]");
+            let Some(link) = self.element::<ContingentText>(&element, raw) else { continue };
+            let from = find(self, raw, &element, &link.from);
+            let to = find(self, raw, &element, &link.to);
+            let delay = link.delay.map_or(Delay::NONE, |(min, max)| Delay {
+                min: min.0,
+                max: max.map_or(Bound::Infinite, |max| Bound::Finite(max.0)),
+            });
+            if let (Some(from), Some(to)) = (from, to) {
+                let (lower, upper) = (link.lower.0, link.upper.0);
+                contingents.push(ContingentLink { from, to, lower, upper, delay });
+            }
+        }
+        if !self.problems.is_empty() {
+            return None;
+        }
+        match Network::new(file.name.clone(), origin?, events, requirements, contingents) {
+            Ok(network) => Some(network),
+            Err(errors) => {
+                for error in errors {
+                    let raw = match &error {
+                        ModelError::RequirementReversed { index, .. } => file.requirements[*index],
+                        ModelError::LinkBounds { index, .. }
+                        | ModelError::DelayBounds { index, .. }
+                        | ModelError::ContingentOrigin { index }
+                        | ModelError::TwoLinksEndThere { index, .. } => file.contingents[*index],
+                        _ => file.origin,
+                    };
+                    self.problem(raw, error.to_string());
+                }
+                None
+            }
+        }
+    }
+
+    fn element<T: Deserialize<'a>>(&mut self, name: &str, raw: &'a RawValue) -> Option<T> {
+        match serde_json::from_str(raw.get()) {
+            Ok(value) => Some(value),
+            Err(error) => {
+                let at = self.offset(raw);
+                self.problems.push(problem(self.text, at, name, raw.get(), &error));
+                None
+            }
+        }
+    }
+
+    fn problem(&mut self, raw: &'a RawValue, message: String) {
+        self.problems.push(ReadProblem { offset: self.offset(raw), message });
+    }
+
+    /// Where a borrowed value is in the text.
+    fn offset(&self, raw: &RawValue) -> usize {
+        (raw.get().as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize).min(self.text.len())
+    }
+}
+
+/// Words an error of serde_json, which counts lines and columns within `part` (that starts at `start` of `text`).
+fn problem(text: &str, start: usize, element: &str, part: &str, error: &serde_json::Error) -> ReadProblem {
+    let line_start: usize =
+        part.split_inclusive('\n').take(error.line().saturating_sub(1)).map(str::len).sum::<usize>();
+    let mut offset = (start + line_start + error.column().saturating_sub(1)).min(text.len());
+    while !text.is_char_boundary(offset) {
+        offset -= 1;
+    }
+    let mut message = error.to_string();
+    if let Some(at) = message.rfind(" at line ") {
+        message.truncate(at);
+    }
+    let message = if element.is_empty() { message } else { format!("{element}: {message}") };
+    ReadProblem { offset, message }
+}
+
+/// The known name most like a wrong one, if one is like it at all: another case, or one or two letters off.
+fn nearest<'a>(wrong: &str, known: impl Iterator<Item = &'a String>) -> Option<&'a String> {
+    let wrong = wrong.to_lowercase();
+    let most = if wrong.chars().count() < 4 { 1 } else { 2 };
+    known
+        .map(|name| (distance(&wrong, &name.to_lowercase(), most), name))
+        .filter(|(distance, _)| *distance <= most)
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, name)| name)
+}
+
+/// Levenshtein distance, or more than `most`.
+fn distance(a: &str, b: &str, most: usize) -> usize {
+    let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
+    if a.len().abs_diff(b.len()) > most {
+        return most + 1;
+    }
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, x) in a.iter().enumerate() {
+        let mut diagonal = std::mem::replace(&mut row[0], i + 1);
+        for (j, y) in b.iter().enumerate() {
+            let replaced = diagonal + usize::from(x != y);
+            diagonal = row[j + 1];
+            row[j + 1] = replaced.min(diagonal + 1).min(row[j] + 1);
+        }
+    }
+    row[b.len()]
+}
+
+struct Document<'a>(&'a Network);
+
+impl Serialize for Document<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let network = self.0;
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("format", FORMAT)?;
+        map.serialize_entry("name", network.name())?;
+        map.serialize_entry("time_unit", "s")?;
+        map.serialize_entry("origin", network.id(network.origin()))?;
+        map.serialize_entry("events", &List(network.events(), |event| EventDocument(event)))?;
+        let requirement = |requirement| RequirementDocument { network, requirement };
+        map.serialize_entry("requirements", &List(network.requirements(), requirement))?;
+        map.serialize_entry(
+            "contingents",
+            &List(network.contingents(), |link| LinkDocument { network, link }),
+        )?;
+        map.end()
+    }
+}
+
+struct List<'a, T, F>(&'a [T], F);
+
+impl<'a, T, U: Serialize, F: Fn(&'a T) -> U> Serialize for List<'a, T, F> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut list = serializer.serialize_seq(Some(self.0.len()))?;
+        for item in self.0 {
+            list.serialize_element(&(self.1)(item))?;
+        }
+        list.end()
+    }
+}
+
+struct EventDocument<'a>(&'a Event);
+
+impl Serialize for EventDocument<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let names: Vec<&str> = self.0.names.iter().map(|name| name.text.as_str()).collect();
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("id", names[0])?;
+        if names.len() > 1 {
+            map.serialize_entry("names", &names)?;
+        }
+        map.end()
+    }
+}
+
+struct RequirementDocument<'a> {
+    network: &'a Network,
+    requirement: &'a Requirement,
+}
+
+impl Serialize for RequirementDocument<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("from", self.network.id(self.requirement.from))?;
+        map.serialize_entry("to", self.network.id(self.requirement.to))?;
+        if let Bound::Finite(lower) = self.requirement.lower {
+            map.serialize_entry("lower", &number(&lower))?;
+        }
+        if let Bound::Finite(upper) = self.requirement.upper {
+            map.serialize_entry("upper", &number(&upper))?;
+        }
+        map.end()
+    }
+}
+
+struct LinkDocument<'a> {
+    network: &'a Network,
+    link: &'a ContingentLink,
+}
+
+impl Serialize for LinkDocument<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("from", self.network.id(self.link.from))?;
+        map.serialize_entry("to", self.network.id(self.link.to))?;
+        map.serialize_entry("lower", &number(&self.link.lower))?;
+        map.serialize_entry("upper", &number(&self.link.upper))?;
+        if self.link.delay != Delay::NONE {
+            let max = self.link.delay.max.finite().map(|max| number(&max));
+            map.serialize_entry("delay", &(number(&self.link.delay.min), max))?;
+        }
+        map.end()
+    }
+}
+
+/// Seconds as a JSON number with all its digits.
+pub fn number(seconds: &impl std::fmt::Display) -> Box<RawValue> {
+    RawValue::from_string(seconds.to_string())
+        .unwrap_or_else(|error| unreachable!("seconds are a JSON number: {error}"))
+}

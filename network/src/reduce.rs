@@ -1,0 +1,328 @@
+//! From a delay STNU to a plain one: the reduction that makes every algorithm for plain STNUs work with late news.
+//!
+//! Lemmas 7 to 13 of the thesis (N. Bhargava's variable-delay to fixed-delay transformations), read as one linear pass.
+//! Every event is *placed*: its true time lies in `[earliest, latest]` after the time of a node of the plain STNU.
+//! - An executable event is its own node, with no uncertainty.
+//! - A contingent event that is **heard**, with link [l, u] and delay [g-, g+], gets a node for the moment we act as if
+//!   the news had come, at the end of a link [l + g+, u + g-]; it happened between g+ and g- before that node.
+//! - A **hidden** one (l = u, or news that may never come, or delays so different that the news tells nothing) gets no
+//!   node: it is somewhere in [l, u] after its activation.
+//!
+//! A requirement `t_j - t_i <= w` must hold wherever the two really are: `node_j - node_i <= w - latest_j + earliest_i`.
+//!
+//! Chains (a link that starts at a contingent event) are placed from the parent's place, which is sound, and exact
+//! unless the parent's news is delayed. A requirement within one tree of links is decided here: only Nature has a say.
+//! A child at a fixed distance from its parent is the same uncertainty, heard by whichever news says more.
+
+use crate::blame::Tally;
+use crate::conflict::{Conflict, Part};
+use crate::model::{ContingentLink, EventId, Network};
+use crate::stnu::{Edge, Link, Stnu, TooLarge, add};
+use crate::time::{Bound, Time};
+use crate::trees::{Trees, link_to};
+
+/// A plain STNU that is dynamically controllable iff the network it is from is variable-delay controllable (with the
+/// exception of delayed chains, where it is at least never too hopeful), and the way back.
+#[derive(Clone, Debug)]
+pub struct Reduction {
+    /// The plain STNU; node 0 is the origin.
+    pub stnu: Stnu,
+    /// What each node of `stnu` stands for: an executable event, or the contingent event at the root of a group.
+    pub event_of: Vec<EventId>,
+    /// Where each event of the network is.
+    pub places: Vec<Place>,
+    pub(crate) sources: Vec<Source>,
+}
+
+/// Where an event is: truly in `[earliest, latest]` (microseconds) after the time of `node`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// A node of the plain STNU.
+    pub node: u32,
+    /// The least the event comes after the node (often negative: before it).
+    pub earliest: i64,
+    /// The most the event comes after the node.
+    pub latest: i64,
+    /// How its news is treated.
+    pub news: News,
+    /// The event from whose place this one was derived by adding link bounds; the event itself if it has a node.
+    pub(crate) base: EventId,
+    /// True if a cleverer use of the news in a delayed chain might know more.
+    pub(crate) inexact: bool,
+}
+
+/// What the news of an event is to the execution.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum News {
+    /// The event is ours to execute; there is no news.
+    Executable,
+    /// News of this event, when it comes, lets its node happen.
+    Drives,
+    /// News is recorded, not needed: it tells nothing, or a sibling at a fixed distance tells more.
+    Unused,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Source {
+    Upper(usize),
+    Lower(usize),
+    AfterOrigin,
+}
+
+/// Why there is no plain STNU.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ReduceError {
+    /// Nature alone can violate these constraints: not controllable.
+    Never(Conflict),
+    /// The numbers are too large to compute with.
+    TooLarge,
+}
+
+impl From<TooLarge> for ReduceError {
+    fn from(_: TooLarge) -> ReduceError {
+        ReduceError::TooLarge
+    }
+}
+
+/// How far an execution has got, for reducing what is left of it.
+#[derive(Clone, Debug)]
+pub struct Progress {
+    /// Nothing more can happen before this.
+    pub now: Time,
+    /// For every event the interval in which it happened, if anything is known: a point for what we executed.
+    pub known: Vec<Option<(Time, Time)>>,
+}
+
+/// Reduces a merged network.
+pub fn reduce(network: &Network) -> Result<Reduction, ReduceError> {
+    Reducer::new(network, None)?.reduce()
+}
+
+/// Reduces what is left of an execution: everything known is placed at the origin, nothing else happens before `now`.
+pub fn reduce_rest(network: &Network, progress: &Progress) -> Result<Reduction, ReduceError> {
+    Reducer::new(network, Some(progress))?.reduce()
+}
+
+/// The news a group is acted on by: it arrives in `[min, max]` after the root of the group.
+struct BestNews {
+    of: EventId,
+    min: i64,
+    max: i64,
+    /// There is other news of the same group, which is not made use of.
+    rivals: bool,
+}
+
+impl Place {
+    fn is_uncertain(&self) -> bool {
+        self.earliest != self.latest
+    }
+}
+
+struct Reducer<'a> {
+    network: &'a Network,
+    progress: Option<&'a Progress>,
+    trees: Trees,
+    places: Vec<Option<Place>>,
+    event_of: Vec<EventId>,
+    links: Vec<Link>,
+}
+
+impl<'a> Reducer<'a> {
+    fn new(network: &'a Network, progress: Option<&'a Progress>) -> Result<Reducer<'a>, TooLarge> {
+        Ok(Reducer {
+            network,
+            progress,
+            trees: Trees::new(network)?,
+            places: vec![None; network.events().len()],
+            event_of: Vec::new(),
+            links: Vec::new(),
+        })
+    }
+
+    fn reduce(mut self) -> Result<Reduction, ReduceError> {
+        self.place_known_and_executable();
+        for at in 0..self.trees.parents_first.len() {
+            let event = self.trees.parents_first[at];
+            if self.places[event.index()].is_none() {
+                self.place_group(event)?;
+            }
+        }
+        let places: Vec<Place> = self.places.iter().copied().flatten().collect();
+        debug_assert_eq!(places.len(), self.network.events().len());
+        let (edges, sources) = self.edges(&places)?;
+        let stnu = Stnu { nodes: self.event_of.len() as u32, edges, links: self.links };
+        Ok(Reduction { stnu, event_of: self.event_of, places, sources })
+    }
+
+    fn place_known_and_executable(&mut self) {
+        let origin = self.network.origin();
+        self.event_of.push(origin);
+        for event in self.network.event_ids() {
+            let known = self.progress.and_then(|progress| progress.known[event.index()]);
+            let (node, earliest, latest) = match known {
+                Some((earliest, latest)) => (0, earliest.as_micros(), latest.as_micros()),
+                None if event == origin => (0, 0, 0),
+                None if self.network.link_of(event).is_some() => continue,
+                None => {
+                    self.event_of.push(event);
+                    (self.event_of.len() as u32 - 1, 0, 0)
+                }
+            };
+            let executable = self.network.link_of(event).is_none();
+            let news = if executable { News::Executable } else { News::Unused };
+            self.places[event.index()] =
+                Some(Place { node, earliest, latest, news, base: event, inexact: false });
+        }
+    }
+
+    /// Places a contingent event whose parent is placed, with all that follow it at a fixed distance.
+    fn place_group(&mut self, root: EventId) -> Result<(), TooLarge> {
+        let group = self.trees.twins_of(self.network, root);
+        let parent = self.link(root).from;
+        let mut base = parent;
+        let (mut lower, mut upper) = self.window(root, base)?;
+        let mut inexact = self.place(parent).is_uncertain() || self.place(parent).inexact;
+        // A single value, or news that may be equally late whatever happened, tells nothing.
+        let news = self.best_news(&group)?.filter(|news| upper - lower > news.max - news.min);
+        if let Some(news) = &news {
+            // The moment of acting on the news must not come before the node it is measured from.
+            while add(lower, news.max)? < 0 {
+                base = self.place(base).base;
+                (lower, upper) = self.window(root, base)?;
+            }
+            inexact |= news.rivals && news.min != news.max;
+        }
+        if inexact {
+            self.places[parent.index()].iter_mut().for_each(|place| place.inexact = true);
+        }
+        let activation = self.place(base).node;
+        let mut node = activation;
+        if let Some(news) = &news {
+            let (mut earliest, latest) = (add(lower, news.max)?, add(upper, news.min)?);
+            if activation == 0 {
+                earliest = earliest.max(self.now());
+            }
+            if earliest < latest {
+                node = self.event_of.len() as u32;
+                self.event_of.push(root);
+                self.links.push(Link { activation, contingent: node, lower: earliest, upper: latest });
+                (lower, upper) = (-news.max, -news.min);
+            } else {
+                // Acted on at `latest` at the latest, and that is now.
+                (lower, upper) = (add(latest, -news.max)?, add(latest, -news.min)?);
+            }
+        }
+        for (event, offset) in group {
+            let drives = node != activation && news.as_ref().is_some_and(|news| news.of == event);
+            let place = Place {
+                node,
+                earliest: add(lower, offset)?,
+                latest: add(upper, offset)?,
+                news: if drives { News::Drives } else { News::Unused },
+                base,
+                inexact,
+            };
+            self.places[event.index()].get_or_insert(place);
+        }
+        Ok(())
+    }
+
+    /// Of all the news that tell of the root of a group: that which varies least, then the earliest.
+    fn best_news(&self, group: &[(EventId, i64)]) -> Result<Option<BestNews>, TooLarge> {
+        let mut best: Option<BestNews> = None;
+        for &(event, offset) in group {
+            let delay = self.link(event).delay;
+            let Bound::Finite(max) = delay.max else { continue };
+            let (min, max) = (add(offset, delay.min.as_micros())?, add(offset, max.as_micros())?);
+            let rivals = best.is_some();
+            best = match best {
+                Some(best) if (best.max - best.min, best.max) <= (max - min, max) => {
+                    Some(BestNews { rivals, ..best })
+                }
+                _ => Some(BestNews { of: event, min, max, rivals }),
+            };
+        }
+        Ok(best)
+    }
+
+    fn now(&self) -> i64 {
+        self.progress.map_or(0, |progress| progress.now.as_micros())
+    }
+
+    /// The window of `event` after the node of its ancestor `base`.
+    fn window(&self, event: EventId, base: EventId) -> Result<(i64, i64), TooLarge> {
+        let place = self.place(base);
+        let (mut lower, mut upper) = (place.earliest, place.latest);
+        let mut at = event;
+        while at != base {
+            let link = self.link(at);
+            lower = add(lower, link.lower.as_micros())?;
+            upper = add(upper, link.upper.as_micros())?;
+            at = link.from;
+        }
+        Ok((lower, upper))
+    }
+
+    fn link(&self, contingent: EventId) -> &'a ContingentLink {
+        link_to(self.network, contingent)
+    }
+
+    /// Parents are placed before their children.
+    fn place(&self, event: EventId) -> Place {
+        match self.places[event.index()] {
+            Some(place) => place,
+            None => unreachable!("a contingent event is placed after its activation"),
+        }
+    }
+
+    fn edges(&self, places: &[Place]) -> Result<(Vec<Edge>, Vec<Source>), ReduceError> {
+        let mut edges = Vec::new();
+        let mut sources = Vec::new();
+        for (node, _) in self.event_of.iter().enumerate().skip(1) {
+            edges.push(Edge { from: node as u32, to: 0, weight: -self.now() });
+            sources.push(Source::AfterOrigin);
+        }
+        for (index, requirement) in self.network.requirements().iter().enumerate() {
+            let upper = requirement.upper.finite().map(|w| (requirement.from, requirement.to, w.as_micros()));
+            let lower =
+                requirement.lower.finite().map(|w| (requirement.to, requirement.from, -w.as_micros()));
+            for (source, side) in [(Source::Upper(index), upper), (Source::Lower(index), lower)] {
+                let Some((from, to, weight)) = side else { continue };
+                if let Some(worst) = self.trees.nature_alone(self.network, from, to)? {
+                    if worst > weight && self.progress.is_none() {
+                        return Err(ReduceError::Never(
+                            self.natures_conflict(source, from, to, weight, worst),
+                        ));
+                    }
+                    continue;
+                }
+                let (from, to) = (places[from.index()], places[to.index()]);
+                let weight = add(add(weight, -to.latest)?, from.earliest)?;
+                // Both at the origin: two events of the past.
+                if from.node != to.node {
+                    edges.push(Edge { from: from.node, to: to.node, weight });
+                    sources.push(source);
+                }
+            }
+        }
+        Ok((edges, sources))
+    }
+
+    fn natures_conflict(
+        &self,
+        source: Source,
+        from: EventId,
+        to: EventId,
+        weight: i64,
+        worst: i64,
+    ) -> Conflict {
+        let mut tally = Tally::default();
+        tally.add(source.part(), 1);
+        let meet = self.trees.meet(self.network, from, to);
+        tally.path(self.network, meet, to, Part::LinkUpper);
+        tally.path(self.network, meet, from, Part::LinkLower);
+        let conflict = tally.conflict(self.network, false);
+        debug_assert_eq!(conflict.total.as_micros(), weight - worst);
+        conflict
+    }
+}

@@ -165,9 +165,10 @@ const CLASSICS: &[(bool, &str, &str)] = &[
     (
         true,
         "contingent ends after different starts",
-        "a =[1,3]=> b; x =[1,1]=> c; b -[-4,0]-> c; a -[2,inf]-> x",
+        "a =[1,3]=> b; x =[1,1]=> c; b -[0,3]-> c; a -[2,inf]-> x",
     ),
-    (false, "one second apart in the worst case", "a =[1,3]=> b; x =[1,1]=> c; b -[0,1]-> c; a -[0,inf]-> x"),
+    (true, "a link started by the end of another", "a =[1,3]=> b; x =[1,1]=> c; b -[0,1]-> c"),
+    (false, "too uncertain for that", "a =[1,3]=> b; x =[1,2]=> c; b -[0,1]-> c"),
     (true, "reaction the moment it happens", "a =[1,7]=> b; b -[0,0]-> x"),
     (false, "an event that must come before Nature's", "a =[1,7]=> b; b -[-1,-1]-> x"),
     (true, "the least Nature may take is enough time", "a =[1,7]=> b; x -[1,7]-> b; a -[0,0]-> x"),
@@ -253,18 +254,18 @@ fn written(text: &str) -> Network {
         }) as u32)
     };
     let bounds = |text: &str| {
-        let inner = text.trim_matches(['=', '-', '>', '[', ']', '+']);
-        let (low, high) = inner.split_once(',').expect("two bounds");
-        let bound =
-            |text: &str| text.parse().map_or(Bound::Infinite, |seconds| Duration::from_secs(seconds).into());
+        let (_, inner) = text.split_once('[').expect("a bracket");
+        let (low, high) = inner.split_once(']').expect("a bracket").0.split_once(',').expect("two bounds");
+        let bound = |text: &str| match text {
+            "inf" | "-inf" => Bound::Infinite,
+            seconds => Duration::parse_seconds(seconds).expect("seconds").into(),
+        };
         (bound(low), bound(high))
     };
     let (mut requirements, mut contingents) = (Vec::new(), Vec::new());
     for part in text.split("; ") {
         let words: Vec<&str> = part.split(' ').collect();
-        // `-[-3,-1]->`: only the arrow goes, not the signs.
-        let arrow = words[1].trim_start_matches(['=', '-']).trim_end_matches(['=', '-', '>']);
-        let (from, to, (lower, upper)) = (event(words[0]), event(words[2]), bounds_in(arrow, bounds));
+        let (from, to, (lower, upper)) = (event(words[0]), event(words[2]), bounds(words[1]));
         if words[1].starts_with('=') {
             let delay = words.get(3).map_or(Delay::NONE, |delay| {
                 let (min, max) = bounds(delay);
@@ -280,4 +281,159 @@ fn written(text: &str) -> Network {
     let events = names.iter().map(named).collect();
     Network::new("classic".to_string(), EventId(0), events, requirements, contingents)
         .expect("a valid network")
+}
+
+/// True if one schedule of the executable events satisfies all requirements whatever Nature picks (T. Vidal,
+/// H. Fargier 1999): each requirement must hold between the executable events the two chains of links start from, for
+/// the least and the most Nature may put between those and the ends.
+fn strongly_controllable(network: &Network) -> bool {
+    /// The events from `event` back to its root, and the least and the most from each of them to `event`.
+    fn line(network: &Network, event: EventId) -> Vec<(EventId, i64, i64)> {
+        let mut line = vec![(event, 0, 0)];
+        while let Some(link) = network.link_of(line[line.len() - 1].0) {
+            let (link, (_, least, most)) = (&network.contingents()[link], line[line.len() - 1]);
+            line.push((link.from, least + link.lower.as_micros(), most + link.upper.as_micros()));
+        }
+        line
+    }
+    let mut edges: Vec<(EventId, EventId, i64)> =
+        network.event_ids().map(|event| (event, network.origin(), 0)).collect();
+    for requirement in network.requirements() {
+        for (from, to, weight) in [
+            (requirement.from, requirement.to, requirement.upper.finite().map(|upper| upper.as_micros())),
+            (requirement.to, requirement.from, requirement.lower.finite().map(|lower| -lower.as_micros())),
+        ] {
+            let Some(weight) = weight else { continue };
+            let (from, to) = (line(network, from), line(network, to));
+            // What the two have in common cancels out: go back to where they meet, or else to the two roots.
+            let meeting = from.iter().find_map(|a| to.iter().find(|b| a.0 == b.0).map(|b| (*a, *b)));
+            let (a, b) = meeting.unwrap_or((from[from.len() - 1], to[to.len() - 1]));
+            edges.push((a.0, b.0, weight + a.1 - b.2));
+        }
+    }
+    let mut latest = vec![0; network.events().len()];
+    for _ in 0..=latest.len() {
+        let before = latest.clone();
+        for &(from, to, weight) in &edges {
+            latest[to.index()] = latest[to.index()].min(latest[from.index()] + weight);
+        }
+        if latest == before {
+            return true;
+        }
+    }
+    false
+}
+
+/// The game again, this time with nothing clever in it: all worlds are listed at the start, true times and times of news
+/// are worked out from the world whenever they are needed, and every set of events is tried at every second.
+mod naive {
+    use super::{Bound, Duration, EventId, Network};
+    use std::collections::BTreeMap;
+
+    /// Duration and delay of each link, in seconds. No delay: the news never comes.
+    type World = Vec<(i64, Option<i64>)>;
+
+    /// When we executed each event, if we did.
+    type Done = Vec<Option<i64>>;
+
+    /// True if there is a strategy that satisfies all requirements whatever Nature picks.
+    pub(crate) fn controllable(network: &Network) -> bool {
+        let mut worlds: Vec<World> = vec![Vec::new()];
+        let mut end = 0;
+        for link in network.contingents() {
+            let delays: Vec<Option<i64>> = match link.delay.max {
+                Bound::Finite(max) => (seconds(link.delay.min)..=seconds(max)).map(Some).collect(),
+                Bound::Infinite => vec![None],
+            };
+            end += seconds(link.upper) + delays.iter().flatten().max().unwrap_or(&0);
+            let durations = seconds(link.lower)..=seconds(link.upper);
+            let choices: Vec<_> =
+                durations.flat_map(|duration| delays.iter().map(move |&delay| (duration, delay))).collect();
+            worlds = worlds
+                .iter()
+                .flat_map(|world| choices.iter().map(|&choice| [&world[..], &[choice]].concat()))
+                .collect();
+        }
+        for requirement in network.requirements() {
+            let sizes =
+                [requirement.lower, requirement.upper].map(|bound| bound.finite().map_or(0, seconds).abs());
+            end += sizes[0].max(sizes[1]);
+        }
+        let mut done = vec![None; network.events().len()];
+        done[network.origin().index()] = Some(0);
+        let parts = parts(network, &done, 0, &worlds);
+        parts.into_iter().all(|worlds| win(network, &done, 0, end, &worlds))
+    }
+
+    /// True if we win from `now` on, in all these worlds, which have all given the same news so far.
+    fn win(network: &Network, done: &Done, now: i64, end: i64, worlds: &[World]) -> bool {
+        if worlds.iter().any(|world| lost(network, done, now, world)) {
+            return false;
+        }
+        let free = |event: &EventId| network.link_of(*event).is_none() && done[event.index()].is_none();
+        let left: Vec<EventId> = network.event_ids().filter(free).collect();
+        if left.is_empty() {
+            return true;
+        }
+        let execute = |set: u32| {
+            let mut done = done.clone();
+            for (bit, event) in left.iter().enumerate() {
+                if set >> bit & 1 == 1 {
+                    done[event.index()] = Some(now);
+                }
+            }
+            let parts = parts(network, &done, now, worlds);
+            parts.into_iter().all(|worlds| win(network, &done, now, end, &worlds))
+        };
+        let wait = || {
+            let parts = parts(network, done, now + 1, worlds);
+            parts.into_iter().all(|worlds| win(network, done, now + 1, end, &worlds))
+        };
+        (1..1 << left.len()).any(execute) || now < end && wait()
+    }
+
+    /// The worlds, sorted by the news up to `now`.
+    fn parts(network: &Network, done: &Done, now: i64, worlds: &[World]) -> Vec<Vec<World>> {
+        let mut parts: BTreeMap<Vec<Option<i64>>, Vec<World>> = BTreeMap::new();
+        for world in worlds {
+            let news = |(index, link): (usize, &kirk_network::ContingentLink)| {
+                let arrives = time(network, done, world, link.to)? + world[index].1?;
+                (arrives <= now).then_some(arrives)
+            };
+            let heard = network.contingents().iter().enumerate().map(news).collect();
+            parts.entry(heard).or_default().push(world.clone());
+        }
+        parts.into_values().collect()
+    }
+
+    /// True if a requirement is violated in this world, whatever happens from now on.
+    fn lost(network: &Network, done: &Done, now: i64, world: &World) -> bool {
+        network.requirements().iter().any(|requirement| {
+            match (time(network, done, world, requirement.from), time(network, done, world, requirement.to)) {
+                (Some(from), Some(to)) => {
+                    requirement.lower.finite().is_some_and(|lower| to - from < seconds(lower))
+                        || requirement.upper.finite().is_some_and(|upper| to - from > seconds(upper))
+                }
+                // What has no time yet will have a time from now on.
+                (Some(from), None) => {
+                    requirement.upper.finite().is_some_and(|upper| now - from > seconds(upper))
+                }
+                (None, Some(to)) => requirement.lower.finite().is_some_and(|lower| to - now < seconds(lower)),
+                (None, None) => false,
+            }
+        })
+    }
+
+    /// The true time of an event in this world, past or future, if it follows from what has been executed.
+    fn time(network: &Network, done: &Done, world: &World, event: EventId) -> Option<i64> {
+        match network.link_of(event) {
+            None => done[event.index()],
+            Some(link) => Some(time(network, done, world, network.contingents()[link].from)? + world[link].0),
+        }
+    }
+
+    fn seconds(duration: Duration) -> i64 {
+        assert_eq!(duration.as_micros() % 1_000_000, 0, "whole seconds");
+        duration.as_micros() / 1_000_000
+    }
 }

@@ -59,7 +59,7 @@ pub struct Shape {
     pub executables: RangeInclusive<i64>,
     /// How many contingent links.
     pub links: RangeInclusive<i64>,
-    /// How many requirements for each event but the origin, in percent: 100 is one for each.
+    /// How many further requirements for each event but the origin, in percent: 100 is one for each.
     pub density: RangeInclusive<i64>,
     /// The latest nominal time of an executable event.
     pub horizon: i64,
@@ -69,6 +69,8 @@ pub struct Shape {
     pub spread: i64,
     /// How far a requirement may reach below and above its nominal value.
     pub slack: i64,
+    /// Chance of an executable event that follows a contingent one within a narrow interval.
+    pub follow: i64,
     /// Chance of a link that starts at a contingent event.
     pub chain: i64,
     /// Chance of a fixed delay, not zero.
@@ -89,11 +91,12 @@ impl Shape {
         Shape {
             executables: 1..=5,
             links: 1..=3,
-            density: 60..=140,
+            density: 20..=100,
             horizon: 8,
             lower: 4,
             spread: 4,
             slack: 8,
+            follow: 50,
             chain: 0,
             fixed: 0,
             variable: 0,
@@ -113,7 +116,7 @@ impl Shape {
         Shape {
             executables: 6..=16,
             links: 2..=8,
-            density: 80..=140,
+            density: 20..=100,
             horizon: 60,
             lower: 8,
             spread: 8,
@@ -135,62 +138,73 @@ pub fn network(seed: u64, shape: &Shape) -> Network {
     let links = random.within(shape.links.clone()) as usize;
     let count = 1 + executables + links;
 
-    // In order of making: the origin, executable events, contingent events; `number` shuffles their ids.
+    let mut made_contingent = [vec![false; executables], vec![true; links]].concat();
+    random.shuffle(&mut made_contingent);
+
+    // Events by order of making, the origin first; `number` shuffles their ids. All have a nominal time.
     let mut number: Vec<u32> = (0..count as u32).collect();
     random.shuffle(&mut number);
     let id = |index: usize| EventId(number[index]);
     let mut events = vec![Event { names: Vec::new() }; count];
+    events[id(0).index()].names.push(Name { text: "z".to_string(), internal: false });
     let mut nominal = vec![0];
-    for index in 0..count {
-        let text = match index {
-            0 => "z".to_string(),
-            _ if index <= executables => format!("x{index}"),
-            _ => format!("c{}", index - executables),
+    let (mut free, mut contingent) = (vec![0], Vec::new());
+    let (mut requirements, mut contingents) = (Vec::new(), Vec::new());
+    let mut require = |from: usize, to: usize, (lower, upper): (Option<i64>, Option<i64>)| {
+        let bound = |value: Option<i64>| value.map_or(Bound::Infinite, |value| units(shape, value).into());
+        requirements.push(Requirement {
+            from: id(from),
+            to: id(to),
+            lower: bound(lower),
+            upper: bound(upper),
+        });
+    };
+    for (index, is_contingent) in (1..count).zip(made_contingent) {
+        let text = if is_contingent {
+            let from =
+                if !contingent.is_empty() && random.percent(shape.chain) { &contingent } else { &free };
+            let from = *random.choose(from);
+            let lower = random.within(0..=shape.lower);
+            let width = if random.percent(8) { 0 } else { random.within(1..=shape.spread) };
+            nominal.push(nominal[from] + lower + random.within(0..=width));
+            contingents.push(ContingentLink {
+                from: id(from),
+                to: id(index),
+                lower: units(shape, lower),
+                upper: units(shape, lower + width),
+                delay: delay(random, shape),
+            });
+            contingent.push(index);
+            format!("c{}", contingent.len())
+        } else {
+            if !contingent.is_empty() && random.percent(shape.follow) {
+                let after = *random.choose(&contingent);
+                let centre = random.within(0..=shape.lower.max(shape.delay));
+                nominal.push(nominal[after] + centre);
+                let (below, above) = (random.within(0..=shape.spread), random.within(0..=shape.spread));
+                require(after, index, (Some(centre - below), Some(centre + above)));
+            } else {
+                nominal.push(random.within(0..=shape.horizon));
+            }
+            free.push(index);
+            format!("x{}", free.len() - 1)
         };
         events[id(index).index()].names.push(Name { text, internal: false });
-        if (1..=executables).contains(&index) {
-            nominal.push(random.within(0..=shape.horizon));
-        }
     }
 
-    let mut contingents = Vec::new();
-    for index in executables + 1..count {
-        let from = if index > executables + 1 && random.percent(shape.chain) {
-            random.within(executables as i64 + 1..=index as i64 - 1)
-        } else {
-            random.within(0..=executables as i64)
-        } as usize;
-        let lower = random.within(0..=shape.lower);
-        let width = if random.percent(8) { 0 } else { random.within(1..=shape.spread) };
-        nominal.push(nominal[from] + lower + random.within(0..=width));
-        contingents.push(ContingentLink {
-            from: id(from),
-            to: id(index),
-            lower: units(shape, lower),
-            upper: units(shape, lower + width),
-            delay: delay(random, shape),
-        });
-    }
-
-    let density = random.within(shape.density.clone());
-    let requirements = ((count as i64 - 1) * density / 100).max(1);
     // Some networks get tighter requirements than others, or the verdict depends on the number of requirements only.
     let slack = random.within(1..=shape.slack);
-    let requirements = (0..requirements)
-        .filter_map(|_| {
-            let contingent = |random: &mut Random| random.within(executables as i64 + 1..=count as i64 - 1);
-            let a = if random.percent(50) { contingent(random) } else { random.within(0..=count as i64 - 1) };
-            let b =
-                if random.percent(20) { contingent(random) } else { random.within(0..=executables as i64) };
-            let (a, b) = if random.percent(50) { (a as usize, b as usize) } else { (b as usize, a as usize) };
-            let (lower, upper) = interval(random, nominal[b] - nominal[a], slack);
-            let bound =
-                |value: Option<i64>| value.map_or(Bound::Infinite, |value| units(shape, value).into());
-            let requirement =
-                Requirement { from: id(a), to: id(b), lower: bound(lower), upper: bound(upper) };
-            (a != b).then_some(requirement)
-        })
-        .collect();
+    for _ in 0..(count as i64 - 1) * random.within(shape.density.clone()) / 100 {
+        let [a, b] = [50, 20].map(|chance| {
+            let events = if random.percent(chance) && links > 0 { &contingent } else { &free };
+            *random.choose(events)
+        });
+        let (a, b) = if random.percent(50) { (a, b) } else { (b, a) };
+        if a != b {
+            let between = interval(random, nominal[b] - nominal[a], slack);
+            require(a, b, between);
+        }
+    }
 
     random.shuffle(&mut contingents);
     Network::new(format!("random {seed}"), id(0), events, requirements, contingents).expect("a valid network")

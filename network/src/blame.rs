@@ -5,13 +5,43 @@ use std::collections::BTreeMap;
 use crate::conflict::{Conflict, Part, Share};
 use crate::controllability::{Cycle, Step};
 use crate::model::{EventId, Network};
-use crate::reduce::{News, Place, Reduction, Source};
-use crate::stnu::TooLarge;
+use crate::reduce::{Reduction, Source};
 use crate::time::{Bound, Duration};
 use crate::trees::{Trees, link_index};
 
+impl Reduction {
+    /// What a negative cycle of the plain STNU says of the network it is from. Whether it is conservative is not said.
+    pub fn conflict(&self, network: &Network, cycle: &Cycle) -> Conflict {
+        let mut tally = Tally { network, times: BTreeMap::new() };
+        for &(step, times) in &cycle.steps {
+            match step {
+                Step::Edge(edge) => tally.edge(self, self.sources[edge as usize], times),
+                Step::Lower(link) => tally.link(self, link, &EARLY, times),
+                Step::Upper(link) => tally.link(self, link, &LATE, times),
+            }
+        }
+        tally.conflict()
+    }
+}
+
+/// The conflict of a requirement side that Nature alone can violate: `to` may come too long after `from`.
+pub(crate) fn natures_conflict(
+    network: &Network,
+    trees: &Trees,
+    source: Source,
+    from: EventId,
+    to: EventId,
+) -> Conflict {
+    let mut tally = Tally { network, times: BTreeMap::new() };
+    let meet = trees.meet(network, from, to);
+    tally.add(source.part(), 1);
+    tally.path(meet, to, Part::LinkUpper, 1);
+    tally.path(meet, from, Part::LinkLower, 1);
+    tally.conflict()
+}
+
 impl Source {
-    pub(crate) fn part(self) -> Part {
+    fn part(self) -> Part {
         match self {
             Source::Upper(index) => Part::RequirementUpper(index),
             Source::Lower(index) => Part::RequirementLower(index),
@@ -20,178 +50,98 @@ impl Source {
     }
 }
 
-impl Reduction {
-    /// What a negative cycle of the plain STNU says of the network it is from.
-    pub fn conflict(&self, network: &Network, cycle: &Cycle) -> Result<Conflict, TooLarge> {
-        let trees = Trees::new(network)?;
-        let mut tally = Tally::default();
-        let mut conservative = false;
-        for &(step, times) in &cycle.steps {
-            match step {
-                Step::Edge(edge) => {
-                    let source = self.sources[edge as usize];
-                    conservative |= tally.requirement(network, &self.places, &trees, source, times);
-                }
-                Step::Lower(link) => {
-                    conservative |= self.tally_link(network, &trees, link, true, times, &mut tally)
-                }
-                Step::Upper(link) => {
-                    conservative |= self.tally_link(network, &trees, link, false, times, &mut tally)
-                }
-            }
-        }
-        Ok(tally.conflict(network, conservative))
-    }
-
-    fn tally_link(
-        &self,
-        network: &Network,
-        trees: &Trees,
-        link: u32,
-        lower: bool,
-        times: i64,
-        tally: &mut Tally,
-    ) -> bool {
-        let root = self.event_of[self.stnu.links[link as usize].contingent as usize];
-        let place = self.places[root.index()];
-        let driver = self.driver(network, trees, root);
-        if lower {
-            tally.earliest(network, &self.places, trees, place.base, times);
-            tally.path_times(network, place.base, root, Part::LinkLower, times);
-            tally.path_times(network, root, driver, Part::LinkLower, times);
-            tally.add(Part::DelayMax(link_index(network, driver)), -times);
-        } else {
-            tally.latest(network, &self.places, trees, place.base, times);
-            tally.path_times(network, place.base, root, Part::LinkUpper, times);
-            tally.path_times(network, root, driver, Part::LinkUpper, times);
-            tally.add(Part::DelayMin(link_index(network, driver)), -times);
-        }
-        place.inexact
-    }
-
-    /// The event whose news stands for the group of `root`.
-    pub fn driver(&self, network: &Network, trees: &Trees, root: EventId) -> EventId {
-        driver_in(&self.places, network, trees, root)
-    }
+/// The bounds that make up one end of the interval of a place.
+struct End {
+    /// The bound of a link on the way down to the event, and that of a link gone back.
+    link: fn(usize) -> Part,
+    back: fn(usize) -> Part,
+    /// The delay of the news the event is placed by.
+    delay: fn(usize) -> Part,
 }
 
-fn driver_in(places: &[Place], network: &Network, trees: &Trees, root: EventId) -> EventId {
-    let group = trees.twins_of(network, root);
-    group
-        .iter()
-        .map(|&(event, _)| event)
-        .find(|event| places[event.index()].news == News::Drives)
-        .unwrap_or(root)
-}
+/// `+ earliest`: the links at their least, the news at its latest.
+const EARLY: End = End { link: Part::LinkLower, back: Part::LinkUpper, delay: Part::DelayMax };
+/// `- latest`: the links at their most, the news at its earliest.
+const LATE: End = End { link: Part::LinkUpper, back: Part::LinkLower, delay: Part::DelayMin };
 
 /// Sums up what a cycle takes from each bound of the network.
-#[derive(Default)]
-pub(crate) struct Tally {
+struct Tally<'a> {
+    network: &'a Network,
     times: BTreeMap<Part, i64>,
 }
 
-impl Tally {
-    pub(crate) fn add(&mut self, part: Part, times: i64) {
+impl Tally<'_> {
+    fn add(&mut self, part: Part, times: i64) {
         *self.times.entry(part).or_default() += times;
     }
 
     /// All links on the way from `above` down to `below`.
-    fn path_times(
-        &mut self,
-        network: &Network,
-        above: EventId,
-        below: EventId,
-        part: fn(usize) -> Part,
-        times: i64,
-    ) {
+    fn path(&mut self, above: EventId, below: EventId, part: fn(usize) -> Part, times: i64) {
         let mut at = below;
         while at != above {
-            let index = link_index(network, at);
+            let index = link_index(self.network, at);
             self.add(part(index), times);
-            at = network.contingents()[index].from;
+            at = self.network.contingents()[index].from;
         }
     }
 
-    pub(crate) fn path(
-        &mut self,
-        network: &Network,
-        above: EventId,
-        below: EventId,
-        part: fn(usize) -> Part,
-    ) {
-        self.path_times(network, above, below, part, 1);
-    }
-
-    /// A requirement between two places; true if one of them is inexact.
-    pub(crate) fn requirement(
-        &mut self,
-        network: &Network,
-        places: &[Place],
-        trees: &Trees,
-        source: Source,
-        times: i64,
-    ) -> bool {
+    /// `node_to - node_from <= w - latest_to + earliest_from`.
+    fn edge(&mut self, reduction: &Reduction, source: Source, times: i64) {
         self.add(source.part(), times);
         let (from, to) = match source {
-            Source::Upper(index) => (network.requirements()[index].from, network.requirements()[index].to),
-            Source::Lower(index) => (network.requirements()[index].to, network.requirements()[index].from),
-            Source::AfterOrigin => return false,
-        };
-        self.earliest(network, places, trees, from, times);
-        self.latest(network, places, trees, to, times);
-        places[from.index()].inexact || places[to.index()].inexact
-    }
-
-    /// `+ earliest` of a place.
-    fn earliest(&mut self, network: &Network, places: &[Place], trees: &Trees, event: EventId, times: i64) {
-        self.offset(network, places, trees, event, times, [Part::LinkLower, Part::LinkUpper], Part::DelayMax);
-    }
-
-    /// `- latest` of a place.
-    fn latest(&mut self, network: &Network, places: &[Place], trees: &Trees, event: EventId, times: i64) {
-        self.offset(network, places, trees, event, times, [Part::LinkUpper, Part::LinkLower], Part::DelayMin);
-    }
-
-    #[expect(clippy::too_many_arguments, reason = "one formula for both ends of the interval")]
-    fn offset(
-        &mut self,
-        network: &Network,
-        places: &[Place],
-        trees: &Trees,
-        mut event: EventId,
-        times: i64,
-        [forth, back]: [fn(usize) -> Part; 2],
-        delay: fn(usize) -> Part,
-    ) {
-        // Down the links from the base, unless the group has a node of its own: then back from the news.
-        while network.link_of(event).is_some() {
-            let place = places[event.index()];
-            let root = trees.group_root(event);
-            let driver = driver_in(places, network, trees, root);
-            if places[driver.index()].news == News::Drives && places[driver.index()].node == place.node {
-                self.path_times(network, root, event, forth, times);
-                self.path_times(network, root, driver, back, times);
-                self.add(delay(link_index(network, driver)), times);
-                return;
+            Source::Upper(index) => {
+                (self.network.requirements()[index].from, self.network.requirements()[index].to)
             }
-            self.path_times(network, place.base, event, forth, times);
-            event = place.base;
+            Source::Lower(index) => {
+                (self.network.requirements()[index].to, self.network.requirements()[index].from)
+            }
+            Source::AfterOrigin => return,
+        };
+        self.offset(reduction, from, &EARLY, times);
+        self.offset(reduction, to, &LATE, times);
+    }
+
+    /// The lower-case edge of a heard group (`EARLY`) weighs `earliest + max delay`, the upper-case edge (`LATE`)
+    /// `- latest - min delay`: the interval before the news, then the delay with the contrary of its usual sign.
+    fn link(&mut self, reduction: &Reduction, link: u32, end: &End, times: i64) {
+        let node = reduction.stnu.links[link as usize].contingent;
+        let place = reduction.places[reduction.event_of[node as usize].index()];
+        let Some(news) = place.heard_by else { return };
+        self.offset(reduction, place.base, end, times);
+        self.path(place.base, news, end.link, times);
+        self.add((end.delay)(link_index(self.network, news)), -times);
+    }
+
+    fn offset(&mut self, reduction: &Reduction, mut event: EventId, end: &End, times: i64) {
+        while self.network.link_of(event).is_some() {
+            let place = reduction.places[event.index()];
+            let Some(news) = place.heard_by else {
+                self.path(place.base, event, end.link, times);
+                event = place.base;
+                continue;
+            };
+            // The news tells of the root; from there a fixed way leads down to the event.
+            self.path(place.root, event, end.link, times);
+            self.path(place.root, news, end.back, times);
+            self.add((end.delay)(link_index(self.network, news)), times);
+            return;
         }
     }
 
-    pub(crate) fn conflict(self, network: &Network, conservative: bool) -> Conflict {
+    fn conflict(self) -> Conflict {
         let mut members = Vec::new();
         let mut total = 0;
-        for (part, times) in self.times {
-            let amount = times * signed_bound(network, part);
-            total += amount;
-            // Opposite uses of one bound cancel.
-            if times > 0 {
-                let times = u32::try_from(times).unwrap_or(u32::MAX);
-                members.push(Share { part, times, amount: Duration::from_micros(amount) });
+        for (&part, &times) in &self.times {
+            let bound = signed_bound(self.network, part);
+            total += times * bound;
+            // Opposite uses of one bound cancel, and news at once is nobody's fault.
+            let at_once = bound == 0 && matches!(part, Part::DelayMin(_) | Part::DelayMax(_));
+            if times > 0 && !at_once {
+                let amount = Duration::from_micros(times * bound);
+                members.push(Share { part, times: u32::try_from(times).unwrap_or(u32::MAX), amount });
             }
         }
-        Conflict { members, total: Duration::from_micros(total), conservative }
+        Conflict { members, total: Duration::from_micros(total), conservative: false }
     }
 }
 

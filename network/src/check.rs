@@ -8,7 +8,7 @@ use crate::merge::merge;
 use crate::model::{ContingentLink, Delay, Event, EventId, Network, Requirement};
 use crate::reduce::{ReduceError, Reduction, reduce};
 use crate::stnu::TooLarge;
-use crate::time::Bound;
+use crate::time::{Bound, Duration};
 
 /// The answer of [`check`].
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -46,24 +46,48 @@ fn explain(
     network: &Network,
     reduction: Result<Reduction, ReduceError>,
 ) -> Result<Option<Conflict>, TooLarge> {
-    Ok(match first_conflict(network, reduction)? {
-        Some(conflict) => Some(minimise(network, conflict)?),
-        None => None,
-    })
+    let Some(found) = first_conflict(network, &reduction)? else { return Ok(None) };
+    let mut conflict = minimise(network, found)?;
+    conflict.conservative = match &reduction {
+        Ok(reduction) => rests_on_a_delayed_chain(network, reduction, &conflict)?,
+        Err(_) => false,
+    };
+    Ok(Some(conflict))
 }
 
+/// Some conflict of the network, its `conservative` not yet settled.
 fn first_conflict(
     network: &Network,
-    reduction: Result<Reduction, ReduceError>,
+    reduction: &Result<Reduction, ReduceError>,
 ) -> Result<Option<Conflict>, TooLarge> {
     match reduction {
         Err(ReduceError::TooLarge) => Err(TooLarge),
-        Err(ReduceError::Never(conflict)) => Ok(Some(conflict)),
-        Ok(reduction) => match negative_cycle(&reduction.stnu)? {
-            None => Ok(None),
-            Some(cycle) => reduction.conflict(network, &cycle).map(Some),
-        },
+        Err(ReduceError::Never(conflict)) => Ok(Some(conflict.clone())),
+        Ok(reduction) => {
+            Ok(negative_cycle(&reduction.stnu)?.map(|cycle| reduction.conflict(network, &cycle)))
+        }
     }
+}
+
+/// True if a member was placed by the news of a delayed chain, where the reduction does not know all that could be
+/// known, and news at once would make the members controllable.
+fn rests_on_a_delayed_chain(
+    network: &Network,
+    reduction: &Reduction,
+    conflict: &Conflict,
+) -> Result<bool, TooLarge> {
+    let inexact = |event: EventId| reduction.places[event.index()].inexact;
+    let touches_one = members(conflict).into_iter().any(|member| match member {
+        Member::Upper(index) | Member::Lower(index) => {
+            inexact(network.requirements()[index].from) || inexact(network.requirements()[index].to)
+        }
+        Member::Link(index) => inexact(network.contingents()[index].to),
+    });
+    if !touches_one {
+        return Ok(false);
+    }
+    let at_once = Restriction::new(network, &members(conflict), Some(Delay::NONE)).network;
+    Ok(first_conflict(&at_once, &reduce(&at_once))?.is_none())
 }
 
 /// Beyond this many members a conflict is left as it was found; trying each one out would take long.
@@ -92,34 +116,41 @@ fn members(conflict: &Conflict) -> BTreeSet<Member> {
 /// Takes out members one by one as long as the rest is still a conflict.
 fn minimise(network: &Network, found: Conflict) -> Result<Conflict, TooLarge> {
     let mut kept = members(&found);
-    // What is left of the network if only the members are kept may be too little: Nature's links can be needed for
-    // more than their bounds. Then the conflict stays as found.
+    // In a chain it takes all the links before to say when an event can be and how its news is to be used.
+    for member in kept.clone() {
+        let Member::Link(index) = member else { continue };
+        let mut at = network.contingents()[index].from;
+        while let Some(above) = network.link_of(at) {
+            kept.insert(Member::Link(above));
+            at = network.contingents()[above].from;
+        }
+    }
     let Some(mut smallest) = restricted_conflict(network, &kept)? else { return Ok(found) };
-    kept = members(&smallest);
     if kept.len() <= MOST_MEMBERS_TO_TRY {
         for member in kept.clone().into_iter().rev() {
-            if !kept.contains(&member) {
-                continue;
-            }
-            let mut fewer = kept.clone();
-            fewer.remove(&member);
-            if let Some(conflict) = restricted_conflict(network, &fewer)? {
-                kept = members(&conflict);
-                smallest = conflict;
+            kept.remove(&member);
+            match restricted_conflict(network, &kept)? {
+                Some(conflict) => smallest = conflict,
+                None => {
+                    kept.insert(member);
+                }
             }
         }
     }
-    if smallest.conservative {
-        // With the same news at once, is it still impossible? Then the delayed chain is not the reason.
-        let at_once = Restriction::new(network, &kept, Some(Delay::NONE));
-        smallest.conservative = first_conflict(&at_once.network, reduce(&at_once.network))?.is_none();
+    // Links that must be there although the cycle takes nothing from their bounds.
+    for member in kept.difference(&members(&smallest)) {
+        if let Member::Link(index) = *member {
+            let share = Share { part: Part::LinkUpper(index), times: 0, amount: Duration::ZERO };
+            smallest.members.push(share);
+        }
     }
+    smallest.members.sort_by_key(|share| share.part);
     Ok(smallest)
 }
 
 fn restricted_conflict(network: &Network, members: &BTreeSet<Member>) -> Result<Option<Conflict>, TooLarge> {
     let restriction = Restriction::new(network, members, None);
-    let conflict = first_conflict(&restriction.network, reduce(&restriction.network))?;
+    let conflict = first_conflict(&restriction.network, &reduce(&restriction.network))?;
     Ok(conflict.map(|conflict| restriction.back(conflict)))
 }
 

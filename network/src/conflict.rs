@@ -21,7 +21,8 @@ pub struct Conflict {
 pub struct Share {
     /// The constraint.
     pub part: Part,
-    /// How many times the cycle uses it (more than once is rare but possible).
+    /// How many times the cycle uses it. More than once is rare but possible; 0 is a link that only has to be there
+    /// (in a chain it says how the news of later events is to be used).
     pub times: u32,
     /// Its contribution in all: `times` times the bound, with the sign given at [`Part`].
     pub amount: Duration,

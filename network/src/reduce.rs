@@ -14,8 +14,8 @@
 //! unless the parent's news is delayed. A requirement within one tree of links is decided here: only Nature has a say.
 //! A child at a fixed distance from its parent is the same uncertainty, heard by whichever news says more.
 
-use crate::blame::Tally;
-use crate::conflict::{Conflict, Part};
+use crate::blame::natures_conflict;
+use crate::conflict::Conflict;
 use crate::model::{ContingentLink, EventId, Network};
 use crate::stnu::{Edge, Link, Stnu, TooLarge, add};
 use crate::time::{Bound, Time};
@@ -43,23 +43,14 @@ pub struct Place {
     pub earliest: i64,
     /// The most the event comes after the node.
     pub latest: i64,
-    /// How its news is treated.
-    pub news: News,
-    /// The event from whose place this one was derived by adding link bounds; the event itself if it has a node.
+    /// The contingent event by whose news the node happens, if the node is the moment of acting on news.
+    pub heard_by: Option<EventId>,
+    /// The first of the events at a fixed distance from one another that share this node; the event itself otherwise.
+    pub root: EventId,
+    /// The ancestor from whose place the window of this one was worked out; the event itself if there is none.
     pub(crate) base: EventId,
     /// True if a cleverer use of the news in a delayed chain might know more.
     pub(crate) inexact: bool,
-}
-
-/// What the news of an event is to the execution.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum News {
-    /// The event is ours to execute; there is no news.
-    Executable,
-    /// News of this event, when it comes, lets its node happen.
-    Drives,
-    /// News is recorded, not needed: it tells nothing, or a sibling at a fixed distance tells more.
-    Unused,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -104,11 +95,12 @@ pub fn reduce_rest(network: &Network, progress: &Progress) -> Result<Reduction, 
 }
 
 /// The news a group is acted on by: it arrives in `[min, max]` after the root of the group.
+#[derive(Clone, Copy)]
 struct BestNews {
     of: EventId,
     min: i64,
     max: i64,
-    /// There is other news of the same group, which is not made use of.
+    /// There is other news of the same group that could say more, or sooner, and is not made use of.
     rivals: bool,
 }
 
@@ -168,10 +160,9 @@ impl<'a> Reducer<'a> {
                     (self.event_of.len() as u32 - 1, 0, 0)
                 }
             };
-            let executable = self.network.link_of(event).is_none();
-            let news = if executable { News::Executable } else { News::Unused };
-            self.places[event.index()] =
-                Some(Place { node, earliest, latest, news, base: event, inexact: false });
+            let place =
+                Place { node, earliest, latest, heard_by: None, root: event, base: event, inexact: false };
+            self.places[event.index()] = Some(place);
         }
     }
 
@@ -190,7 +181,7 @@ impl<'a> Reducer<'a> {
                 base = self.place(base).base;
                 (lower, upper) = self.window(root, base)?;
             }
-            inexact |= news.rivals && news.min != news.max;
+            inexact |= base != parent || news.rivals;
         }
         if inexact {
             self.places[parent.index()].iter_mut().for_each(|place| place.inexact = true);
@@ -213,12 +204,12 @@ impl<'a> Reducer<'a> {
             }
         }
         for (event, offset) in group {
-            let drives = node != activation && news.as_ref().is_some_and(|news| news.of == event);
             let place = Place {
                 node,
                 earliest: add(lower, offset)?,
                 latest: add(upper, offset)?,
-                news: if drives { News::Drives } else { News::Unused },
+                heard_by: news.as_ref().map(|news| news.of).filter(|_| node != activation),
+                root,
                 base,
                 inexact,
             };
@@ -229,20 +220,22 @@ impl<'a> Reducer<'a> {
 
     /// Of all the news that tell of the root of a group: that which varies least, then the earliest.
     fn best_news(&self, group: &[(EventId, i64)]) -> Result<Option<BestNews>, TooLarge> {
-        let mut best: Option<BestNews> = None;
-        for &(event, offset) in group {
-            let delay = self.link(event).delay;
-            let Bound::Finite(max) = delay.max else { continue };
-            let (min, max) = (add(offset, delay.min.as_micros())?, add(offset, max.as_micros())?);
-            let rivals = best.is_some();
-            best = match best {
-                Some(best) if (best.max - best.min, best.max) <= (max - min, max) => {
-                    Some(BestNews { rivals, ..best })
-                }
-                _ => Some(BestNews { of: event, min, max, rivals }),
-            };
+        let mut all = Vec::new();
+        for &(of, offset) in group {
+            let delay = self.link(of).delay;
+            if let Bound::Finite(max) = delay.max {
+                let (min, max) = (add(offset, delay.min.as_micros())?, add(offset, max.as_micros())?);
+                all.push(BestNews { of, min, max, rivals: false });
+            }
         }
-        Ok(best)
+        let best = all.iter().copied().min_by_key(|news| (news.max - news.min, news.max));
+        Ok(best.map(|best| BestNews {
+            // Exact news that comes before all other news is all there is to know.
+            rivals: all
+                .iter()
+                .any(|other| other.of != best.of && (best.min != best.max || other.min < best.max)),
+            ..best
+        }))
     }
 
     fn now(&self) -> i64 {
@@ -290,9 +283,8 @@ impl<'a> Reducer<'a> {
                 let Some((from, to, weight)) = side else { continue };
                 if let Some(worst) = self.trees.nature_alone(self.network, from, to)? {
                     if worst > weight && self.progress.is_none() {
-                        return Err(ReduceError::Never(
-                            self.natures_conflict(source, from, to, weight, worst),
-                        ));
+                        let conflict = natures_conflict(self.network, &self.trees, source, from, to);
+                        return Err(ReduceError::Never(conflict));
                     }
                     continue;
                 }
@@ -306,23 +298,5 @@ impl<'a> Reducer<'a> {
             }
         }
         Ok((edges, sources))
-    }
-
-    fn natures_conflict(
-        &self,
-        source: Source,
-        from: EventId,
-        to: EventId,
-        weight: i64,
-        worst: i64,
-    ) -> Conflict {
-        let mut tally = Tally::default();
-        tally.add(source.part(), 1);
-        let meet = self.trees.meet(self.network, from, to);
-        tally.path(self.network, meet, to, Part::LinkUpper);
-        tally.path(self.network, meet, from, Part::LinkLower);
-        let conflict = tally.conflict(self.network, false);
-        debug_assert_eq!(conflict.total.as_micros(), weight - worst);
-        conflict
     }
 }

@@ -1,0 +1,184 @@
+//! What must hold of every network, tried on thousands of random ones. A failure prints its seed and a small case.
+//!
+//! `KIRK_CASES=100000 cargo test -p kirk-network --release --test properties` runs as many as one likes.
+
+mod oracle;
+
+use kirk_network::check::conflict;
+use kirk_network::merge::merge;
+use kirk_network::{
+    Bound, Conflict, ContingentLink, Delay, Duration, EventId, Network, Part, Requirement, Verdict, check,
+};
+use oracle::random::{self, Random, Shape};
+use oracle::{closure, game};
+
+fn cases(usual: u64) -> u64 {
+    std::env::var("KIRK_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(usual)
+}
+
+/// Runs a property on networks of some shapes; on failure shrinks and prints.
+fn holds(usual: u64, shapes: &[Shape], property: impl Fn(&Network, u64) -> bool) {
+    for seed in 0..cases(usual) {
+        let shape = &shapes[(seed % shapes.len() as u64) as usize];
+        let network = random::network(seed, shape);
+        if !property(&network, seed) {
+            let small = random::shrunk(&network, |candidate| !property(candidate, seed));
+            panic!(
+                "seed {seed}:\n{}\nwhich shrinks to\n{}",
+                random::describe(&network),
+                random::describe(&small)
+            );
+        }
+    }
+}
+
+fn controllable(network: &Network) -> bool {
+    check(network).unwrap() == Verdict::Controllable
+}
+
+#[test]
+fn without_delays_the_verdict_is_that_of_the_labelled_closure() {
+    let shapes = [Shape::tiny(), Shape::tiny().chained(), Shape::medium(), Shape::medium().chained()];
+    let no_delays = shapes.map(|shape| Shape { fixed: 0, variable: 0, infinite: 0, ..shape });
+    holds(4000, &no_delays, |network, _| controllable(network) == closure::dynamically_controllable(network));
+}
+
+#[test]
+fn with_delays_the_verdict_is_that_of_the_game() {
+    holds(3000, &[Shape::tiny_delayed()], |network, _| {
+        controllable(network) == game::controllable(&merge(network).network)
+    });
+}
+
+#[test]
+fn in_delayed_chains_a_yes_is_that_of_the_game_and_a_no_says_when_it_is_conservative() {
+    holds(3000, &[Shape::tiny_delayed().chained()], |network, _| {
+        let won = game::controllable(&merge(network).network);
+        match check(network).unwrap() {
+            Verdict::Controllable => won,
+            Verdict::Uncontrollable(conflict) => !won || conflict.conservative,
+        }
+    });
+}
+
+/// Only the members of a conflict; without `left_out`, which takes a link out whole.
+fn only(network: &Network, conflict: &Conflict, left_out: Option<Part>) -> Network {
+    let has = |part: Part| Some(part) != left_out && conflict.members.iter().any(|share| share.part == part);
+    let requirements = network.requirements().iter().enumerate().map(|(index, requirement)| {
+        let keep = |part: Part, bound| if has(part) { bound } else { Bound::Infinite };
+        Requirement {
+            lower: keep(Part::RequirementLower(index), requirement.lower),
+            upper: keep(Part::RequirementUpper(index), requirement.upper),
+            ..*requirement
+        }
+    });
+    let links = network.contingents().iter().enumerate().filter(|&(index, _)| {
+        let all = [Part::LinkLower, Part::LinkUpper, Part::DelayMin, Part::DelayMax].map(|part| part(index));
+        all.into_iter().any(has) && !left_out.is_some_and(|part| all.contains(&part))
+    });
+    random::with(network, requirements.collect(), links.map(|(_, link)| *link).collect())
+}
+
+#[test]
+fn a_conflict_adds_up_is_uncontrollable_alone_and_minimal() {
+    let shapes =
+        [Shape::tiny_delayed(), Shape::tiny_delayed().chained(), Shape::medium(), Shape::medium().chained()];
+    holds(4000, &shapes, |network, _| {
+        let merged = merge(network).network;
+        let Some(found) = conflict(&merged).unwrap() else { return true };
+        let sum: i64 = found.members.iter().map(|share| share.amount.as_micros()).sum();
+        let adds_up = sum == found.total.as_micros() && sum < 0;
+        let possible = |network: &Network| conflict(network).unwrap().is_none();
+        let alone = !possible(&only(&merged, &found, None));
+        let minimal = found.members.iter().all(|share| {
+            share.part == Part::AfterOrigin || possible(&only(&merged, &found, Some(share.part)))
+        });
+        adds_up && alone && minimal && conflict(&merged).unwrap() == Some(found)
+    });
+}
+
+#[test]
+fn what_is_harder_is_never_controllable_when_the_easier_is_not() {
+    let unit = Duration::from_secs(1);
+    let shapes = [Shape::tiny_delayed(), Shape::medium(), Shape::medium().chained()];
+    holds(6000, &shapes, |network, seed| {
+        let harder = random::harder(&mut Random::new(seed), network, unit);
+        controllable(network) || !controllable(&harder)
+    });
+}
+
+#[test]
+fn scaling_and_reordering_change_nothing() {
+    let shapes = [Shape::tiny_delayed(), Shape::medium(), Shape::medium().chained()];
+    holds(3000, &shapes, |network, seed| {
+        let verdict = controllable(network);
+        let reordered = random::reordered(&mut Random::new(seed), network);
+        verdict == controllable(&random::scaled(network, 7)) && verdict == controllable(&reordered)
+    });
+}
+
+#[test]
+fn zero_delays_are_dynamic_and_infinite_delays_strong_controllability() {
+    holds(3000, &[Shape::tiny(), Shape::medium()], |network, _| {
+        let never = Delay { min: Duration::ZERO, max: Bound::Infinite };
+        let merged = merge(network).network;
+        controllable(&random::with_delays(&merged, Delay::NONE))
+            == closure::dynamically_controllable(&random::with_delays(&merged, Delay::NONE))
+            && controllable(&random::with_delays(&merged, never)) == strongly_controllable(&merged)
+    });
+}
+
+/// Strong controllability by its definition: one schedule of the executable events that suits every duration, which
+/// is Bellman-Ford over requirements in which every contingent event stands at its worst.
+fn strongly_controllable(network: &Network) -> bool {
+    let link = |event: EventId| network.link_of(event).map(|index| network.contingents()[index]);
+    // The executable event a contingent one depends on, and the interval after it.
+    let place = |mut event: EventId| {
+        let (mut low, mut high) = (0, 0);
+        while let Some(ContingentLink { from, lower, upper, .. }) = link(event) {
+            (low, high, event) = (low + lower.as_micros(), high + upper.as_micros(), from);
+        }
+        (event, low, high)
+    };
+    let ancestors = |event: EventId| {
+        std::iter::successors(Some(event), move |&event| link(event).map(|link| link.from))
+            .collect::<Vec<_>>()
+    };
+    let mut edges = Vec::new();
+    for event in network.event_ids() {
+        if link(event).is_none() {
+            edges.push((event, network.origin(), 0));
+        }
+    }
+    for requirement in network.requirements() {
+        let upper = requirement.upper.finite().map(|w| (requirement.from, requirement.to, w.as_micros()));
+        let lower = requirement.lower.finite().map(|w| (requirement.to, requirement.from, -w.as_micros()));
+        for (from, to, weight) in [upper, lower].into_iter().flatten() {
+            let ((from_base, low, _), (to_base, _, high)) = (place(from), place(to));
+            if from_base == to_base {
+                // What they share cancels.
+                let shared = *ancestors(to).iter().find(|event| ancestors(from).contains(event)).unwrap();
+                let (_, shared_low, shared_high) = place(shared);
+                if (high - shared_high) - (low - shared_low) > weight {
+                    return false;
+                }
+            } else {
+                edges.push((from_base, to_base, weight - high + low));
+            }
+        }
+    }
+    let mut distance = vec![0_i64; network.events().len()];
+    for _ in 0..=network.events().len() {
+        let mut changed = false;
+        for &(from, to, weight) in &edges {
+            if distance[from.index()] + weight < distance[to.index()] {
+                distance[to.index()] = distance[from.index()] + weight;
+                changed = true;
+            }
+        }
+        if !changed {
+            return true;
+        }
+    }
+    false
+}

@@ -18,6 +18,9 @@
 //! **Never.** An infinite delay is played as "the news never comes". More choices for Nature change nothing: who wins
 //! when it never comes wins anyway, by not listening; who loses then loses anyway, as Nature may pick "never".
 //!
+//! **Whole steps.** A step is the greatest common divisor of all bounds. Halving it changes no verdict on any network
+//! tried, as one would expect from shortest paths, whose lengths are whole steps too.
+//!
 //! **How long to wait.** When no news is to come and no window opens later than now, waiting is pointless: all moves of a
 //! strategy that waits can be made that much earlier, which keeps every distance between them and every lower bound.
 

@@ -1,7 +1,7 @@
 //! Random networks from seeds, a readable form of them, and a way to make a failing one smaller.
 //!
-//! Equal seeds and shapes give equal networks, on every machine and for ever, so a seed in a failure message is enough
-//! to see the failure again. About half of the networks of the shapes given here are controllable: a nominal schedule
+//! Equal seeds and shapes give equal networks on every machine, so a seed in a failure message is enough to see the
+//! failure again. About half of the networks of the shapes given here are controllable: a nominal schedule
 //! is drawn first, and most requirements leave some slack around it.
 
 use std::fmt::Write;

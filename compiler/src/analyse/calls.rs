@@ -1,0 +1,112 @@
+//! Who calls whom: no program may call itself, and one that nobody calls is probably a slip.
+
+use crate::code::Code;
+use crate::diagnostic::Diagnostic;
+use crate::form::clip;
+use crate::problem::Problems;
+use crate::source::Span;
+use crate::typed::{Body, Model, Work};
+
+/// Reports every call that leads back to the program it stands in.
+pub(super) fn check_recursion(model: &Model, problems: &mut Problems) {
+    let calls: Vec<Vec<(usize, Span)>> = (0..model.programs.len()).map(|index| calls_of(model, index)).collect();
+    // 0: not seen, 1: on the walk, 2: done.
+    let mut state = vec![0_u8; calls.len()];
+    for start in 0..calls.len() {
+        if state[start] != 0 {
+            continue;
+        }
+        state[start] = 1;
+        let mut walk: Vec<(usize, usize)> = vec![(start, 0)];
+        while let Some((program, next)) = walk.last_mut() {
+            let Some((target, span)) = calls[*program].get(*next).copied() else {
+                state[*program] = 2;
+                walk.pop();
+                continue;
+            };
+            *next += 1;
+            match state[target] {
+                0 => {
+                    state[target] = 1;
+                    walk.push((target, 0));
+                }
+                1 => {
+                    let from = walk.iter().position(|(program, _)| *program == target).unwrap_or(0);
+                    let cycle: Vec<usize> = walk[from..].iter().map(|(program, _)| *program).collect();
+                    problems.push(recursion(model, &cycle, span));
+                }
+                _ => {}
+            }
+        }
+    }
+}
+
+/// Warns of programs that are never called. If the program to start from was chosen, the others that nobody calls
+/// and that are not primitive may be chosen another time: they and what they call are in use.
+pub(super) fn check_use(model: &Model, entry: usize, is_main: bool, problems: &mut Problems) {
+    if problems.has_errors() {
+        return;
+    }
+    let calls: Vec<Vec<(usize, Span)>> = (0..model.programs.len()).map(|index| calls_of(model, index)).collect();
+    let mut called = vec![false; calls.len()];
+    for (target, _) in calls.iter().flatten() {
+        called[*target] = true;
+    }
+    let mut used = vec![false; calls.len()];
+    let mut open = vec![entry];
+    if !is_main {
+        open.extend((0..calls.len()).filter(|index| {
+            !called[*index] && matches!(model.programs[*index].work, Work::Body(_))
+        }));
+    }
+    while let Some(program) = open.pop() {
+        if !std::mem::replace(&mut used[program], true) {
+            open.extend(calls[program].iter().map(|(target, _)| *target));
+        }
+    }
+    let entry_name = clip(&model.programs[entry].name.name);
+    for (program, _) in model.programs.iter().zip(&used).filter(|(_, used)| !**used) {
+        problems.push(
+            Diagnostic::warning(
+                Code::NeverUsed,
+                program.name.span,
+                format!("the program `{}` is never used", clip(&program.name.name)),
+            )
+            .primary("defined here")
+            .help(format!("Nothing that `{entry_name}` does leads to it. To start from it, use `--entry {}`.", clip(&program.name.name))),
+        );
+    }
+}
+
+/// The programs a program calls, with the places of the calls.
+pub(crate) fn calls_of(model: &Model, index: usize) -> Vec<(usize, Span)> {
+    let mut found = Vec::new();
+    let mut open: Vec<&Body> = match &model.programs[index].work {
+        Work::Body(body) => body.iter().rev().collect(),
+        Work::Primitive(_) => Vec::new(),
+    };
+    while let Some(body) = open.pop() {
+        match body {
+            Body::Call { program, span, .. } => found.push((*program, *span)),
+            Body::Group { body, .. } | Body::Within { body, .. } => open.extend(body.iter().rev()),
+        }
+    }
+    found
+}
+
+fn recursion(model: &Model, cycle: &[usize], call: Span) -> Diagnostic {
+    let name = |index: usize| clip(&model.programs[index].name.name);
+    let first = name(cycle[0]);
+    let mut path: Vec<String> = cycle.iter().take(8).map(|index| name(*index)).collect();
+    if cycle.len() > 8 {
+        path.push("...".to_string());
+    }
+    path.push(first.clone());
+    let mut problem = Diagnostic::error(Code::Recursion, call, format!("the program `{first}` calls itself"))
+        .primary(if cycle.len() == 1 { "it is called from its own body" } else { "this call closes the circle" })
+        .help(format!("{}: a mission that never ends cannot be scheduled. Write repetitions out.", path.join(" -> ")));
+    for index in cycle.iter().take(8) {
+        problem = problem.label(model.programs[*index].name.span, "on the circle");
+    }
+    problem
+}

@@ -1,0 +1,227 @@
+//! Classes, and whether conditions and effects fit them.
+
+use super::names::Names;
+use crate::ast::{Class, Condition, ControlProgram, Ident, Program, Slot, SlotOf, Type, Value, ValueKind};
+use crate::code::Code;
+use crate::diagnostic::Diagnostic;
+use crate::form::clip;
+use crate::nearest::nearest;
+use crate::problem::Problems;
+
+/// Types of Lisp that kirk does not look into.
+const LISP_TYPES: [&str; 24] = [
+    "t", "integer", "fixnum", "number", "real", "rational", "ratio", "float", "single-float", "double-float", "string",
+    "simple-string", "symbol", "keyword", "boolean", "null", "list", "cons", "sequence", "vector", "array", "function",
+    "character", "atom",
+];
+
+/// The classes of a program.
+pub(super) struct Classes<'a> {
+    classes: &'a [Class],
+}
+
+impl<'a> Classes<'a> {
+    /// Checks the class definitions.
+    pub(super) fn new(program: &'a Program, names: &Names, problems: &mut Problems) -> Classes<'a> {
+        for class in &program.classes {
+            for parent in &class.supers {
+                if parent.name != "standard-object" && names.class(parent, &class.home).is_none() {
+                    let known = program.classes.iter().map(|class| class.name.name.as_str());
+                    problems.push(
+                        Diagnostic::error(
+                            Code::UnknownClass,
+                            parent.span,
+                            format!("the class `{}` is not defined", clip(&parent.name)),
+                        )
+                        .primary("extended here")
+                        .maybe_help(nearest(&parent.name, known).map(|near| format!("Did you mean `{near}`?"))),
+                    );
+                }
+            }
+            for slot in &class.slots {
+                check_slot(class, slot, program, names, problems);
+            }
+        }
+        Classes { classes: &program.classes }
+    }
+
+    /// Checks a condition or effect of a program, and notes that kirk does not plan with it.
+    pub(super) fn check(
+        &self,
+        condition: &Condition,
+        definition: &ControlProgram,
+        program: &Program,
+        names: &Names,
+        problems: &mut Problems,
+    ) {
+        let name = &definition.name;
+        problems.push(
+            Diagnostic::note(
+                Code::NotPlannedWith,
+                name.span,
+                format!("the conditions and effects of `{}` are not planned with", clip(&name.name)),
+            )
+            .primary("its conditions are read and checked, and kept with the episode")
+            .help("Kirk does not plan: it takes for granted that the program as written brings about what it requires."),
+        );
+        let mut open = vec![condition];
+        while let Some(condition) = open.pop() {
+            match condition {
+                Condition::And(parts) | Condition::Or(parts) => open.extend(parts.iter().rev()),
+                Condition::Not(part) | Condition::AtStart(part) | Condition::AtEnd(part) | Condition::OverAll(part) => {
+                    open.push(part);
+                }
+                Condition::Holds(slot) => {
+                    self.slots(slot, definition, problems);
+                }
+                Condition::Equal(slot, value) => {
+                    let slots = self.slots(slot, definition, problems);
+                    self.object(value, definition, program, names, problems);
+                    if let Some(first) = slots.first()
+                        && !slots.iter().any(|slot| slot.kind.as_ref().is_none_or(|kind| fits(kind, value)))
+                    {
+                        problems.push(wrong_type(first, value));
+                    }
+                }
+            }
+        }
+    }
+
+    /// The slots an accessor may read; reports an accessor no class has.
+    fn slots(&self, slot: &SlotOf, definition: &ControlProgram, problems: &mut Problems) -> Vec<&'a Slot> {
+        let all = || self.classes.iter().flat_map(|class| &class.slots);
+        let wanted = &slot.accessor.name;
+        let found: Vec<&Slot> = all().filter(|slot| slot.accessors.iter().any(|name| name.name == *wanted)).collect();
+        if found.is_empty() {
+            let known = all().flat_map(|slot| &slot.accessors).map(|name| name.name.as_str());
+            let slot_itself = all().find(|slot| slot.name.name == *wanted);
+            let help = match (slot_itself, nearest(wanted, known)) {
+                (Some(_), _) => Some("There is a slot of this name, but it has no `:reader` or `:accessor`.".to_string()),
+                (None, Some(near)) => Some(format!("Did you mean `{near}`?")),
+                (None, None) => None,
+            };
+            problems.push(
+                Diagnostic::error(
+                    Code::UnknownAccessor,
+                    slot.accessor.span,
+                    format!("no class has an accessor `{}`", clip(wanted)),
+                )
+                .primary("not the `:reader` or `:accessor` of any slot")
+                .maybe_help(help),
+            );
+        }
+        if let ValueKind::Name(None, name) = &slot.object.kind
+            && !definition.parameters.iter().any(|parameter| parameter.name == *name)
+        {
+            problems.push(unknown(slot.object.span, name, definition));
+        }
+        found
+    }
+
+    fn object(&self, value: &Value, definition: &ControlProgram, program: &Program, names: &Names, problems: &mut Problems) {
+        if let ValueKind::Name(package, name) = &value.kind {
+            let ident = Ident { package: package.clone(), name: name.clone(), span: value.span };
+            let parameter = program.parameters.is_empty() || names.number(&ident, &definition.home).is_none();
+            if parameter && !definition.parameters.iter().any(|parameter| parameter.name == *name) {
+                problems.push(unknown(value.span, name, definition));
+            }
+        }
+    }
+}
+
+fn check_slot(class: &Class, slot: &Slot, program: &Program, names: &Names, problems: &mut Problems) {
+    let mut open: Vec<&Type> = slot.kind.iter().collect();
+    while let Some(kind) = open.pop() {
+        match kind {
+            Type::Or(kinds) => open.extend(kinds.iter().rev()),
+            Type::Named(name) if !LISP_TYPES.contains(&name.name.as_str()) && names.class(name, &class.home).is_none() => {
+                let known = LISP_TYPES.into_iter().chain(program.classes.iter().map(|class| class.name.name.as_str()));
+                problems.push(
+                    Diagnostic::warning(Code::UnknownType, name.span, format!("`{}` is not a type kirk knows", clip(&name.name)))
+                        .primary("values of this slot are not checked")
+                        .maybe_help(nearest(&name.name, known).map(|near| format!("Did you mean `{near}`?"))),
+                );
+            }
+            _ => {}
+        }
+    }
+    if let (Some(kind), Some(value)) = (&slot.kind, &slot.initform)
+        && !fits(kind, value)
+    {
+        problems.push(wrong_type(slot, value));
+    }
+}
+
+/// False if the value is certainly not of the type.
+fn fits(kind: &Type, value: &Value) -> bool {
+    let known = |value: &Value| !matches!(value.kind, ValueKind::Name(..) | ValueKind::Other(_));
+    if !known(value) {
+        return true;
+    }
+    match kind {
+        Type::Member(values) => values.iter().any(|other| other.kind == value.kind || !known(other) && same_name(other, value)),
+        Type::Or(kinds) => kinds.is_empty() || kinds.iter().any(|kind| fits(kind, value)),
+        Type::Named(name) => match name.name.as_str() {
+            "boolean" => matches!(value.kind, ValueKind::True | ValueKind::Nil),
+            "null" => value.kind == ValueKind::Nil,
+            "string" | "simple-string" => matches!(value.kind, ValueKind::Text(_)),
+            "integer" | "fixnum" => {
+                matches!(value.kind, ValueKind::Number(number) if number.as_micros() % 1_000_000 == 0)
+            }
+            "number" | "real" | "rational" | "float" | "single-float" | "double-float" => {
+                matches!(value.kind, ValueKind::Number(_))
+            }
+            "keyword" | "symbol" => matches!(value.kind, ValueKind::Symbol(_) | ValueKind::True | ValueKind::Nil),
+            _ => true,
+        },
+        Type::Anything => true,
+    }
+}
+
+/// In `(member a b)` the symbols stand unquoted.
+fn same_name(member: &Value, value: &Value) -> bool {
+    matches!((&member.kind, &value.kind), (ValueKind::Name(_, a), ValueKind::Symbol(b)) if a == b)
+}
+
+fn wrong_type(slot: &Slot, value: &Value) -> Diagnostic {
+    let allowed = match &slot.kind {
+        Some(Type::Member(values)) => {
+            let shown: Vec<String> = values.iter().take(12).map(|value| show(&value.kind)).collect();
+            format!("one of {}", shown.join(", "))
+        }
+        Some(Type::Named(name)) => format!("a value of type `{}`", clip(&name.name)),
+        _ => "a value of another type".to_string(),
+    };
+    let near = match (&slot.kind, &value.kind) {
+        (Some(Type::Member(values)), ValueKind::Text(text)) => {
+            let texts = values.iter().filter_map(|value| match &value.kind {
+                ValueKind::Text(text) => Some(text.as_str()),
+                _ => None,
+            });
+            nearest(text, texts).map(|near| format!("Did you mean \"{near}\"?"))
+        }
+        _ => None,
+    };
+    let message = format!("the slot `{}` cannot be {}", clip(&slot.name.name), show(&value.kind));
+    Diagnostic::error(Code::WrongType, value.span, message)
+        .primary(format!("{allowed} was expected"))
+        .label(slot.name.span, "the slot is defined here")
+        .maybe_help(near)
+}
+
+fn show(kind: &ValueKind) -> String {
+    match kind {
+        ValueKind::Number(number) => number.to_string(),
+        ValueKind::Text(text) => format!("\"{}\"", clip(text)),
+        ValueKind::True => "t".to_string(),
+        ValueKind::Nil => "nil".to_string(),
+        ValueKind::Symbol(name) | ValueKind::Name(_, name) | ValueKind::Other(name) => clip(name),
+    }
+}
+
+fn unknown(span: crate::source::Span, name: &str, definition: &ControlProgram) -> Diagnostic {
+    let parameters = definition.parameters.iter().map(|parameter| parameter.name.as_str());
+    Diagnostic::error(Code::UnknownName, span, format!("nothing is called `{}`", clip(name)))
+        .primary(format!("not a parameter of `{}`", clip(&definition.name.name)))
+        .maybe_help(nearest(name, parameters).map(|near| format!("Did you mean `{near}`?")))
+}

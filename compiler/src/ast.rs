@@ -1,0 +1,339 @@
+//! The program as written: names are not resolved yet. Serialised for `--emit ast`, without the places.
+
+use kirk_network::Duration;
+use serde::{Serialize, Serializer};
+
+use crate::source::Span;
+
+/// All definitions, in source order.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Program {
+    /// The packages.
+    pub packages: Vec<Package>,
+    /// The named numbers.
+    pub parameters: Vec<NamedNumber>,
+    /// The classes of agents and objects.
+    pub classes: Vec<Class>,
+    /// The control programs.
+    pub programs: Vec<ControlProgram>,
+}
+
+/// A name as written, in lower case.
+#[derive(Clone, Debug)]
+pub struct Ident {
+    /// The package written before it, if any.
+    pub package: Option<String>,
+    /// The name.
+    pub name: String,
+    /// Where.
+    pub span: Span,
+}
+
+/// `(defpackage ...)`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Package {
+    /// Its name.
+    pub name: Ident,
+    /// The packages whose names it sees.
+    pub uses: Vec<Ident>,
+    /// Single names it takes from other packages.
+    pub imports: Vec<Ident>,
+}
+
+/// `(defparameter ...)` or `(defconstant ...)`.
+#[derive(Clone, Debug, Serialize)]
+pub struct NamedNumber {
+    /// The package it belongs to.
+    pub home: String,
+    /// Its name.
+    pub name: Ident,
+    /// Its value.
+    pub value: Amount,
+}
+
+/// `(defclass ...)`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Class {
+    /// The package it belongs to.
+    pub home: String,
+    /// Its name.
+    pub name: Ident,
+    /// The classes it extends.
+    pub supers: Vec<Ident>,
+    /// Its slots.
+    pub slots: Vec<Slot>,
+}
+
+/// A slot of a class.
+#[derive(Clone, Debug, Serialize)]
+pub struct Slot {
+    /// Its name.
+    pub name: Ident,
+    /// What it may contain.
+    #[serde(rename = "type")]
+    pub kind: Option<Type>,
+    /// The functions that read it.
+    pub accessors: Vec<Ident>,
+    /// Its value at first.
+    pub initform: Option<Value>,
+    /// True if it never changes.
+    pub finalp: bool,
+    /// What it is for.
+    pub documentation: Option<String>,
+}
+
+/// What a slot may contain.
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Type {
+    /// One of these values.
+    Member(Vec<Value>),
+    /// One of these types.
+    Or(Vec<Type>),
+    /// A type of Lisp or a class.
+    Named(Ident),
+    /// A type kirk does not check values against.
+    Anything,
+}
+
+/// `(define-control-program ...)`.
+#[derive(Clone, Debug, Serialize)]
+pub struct ControlProgram {
+    /// The package it belongs to.
+    pub home: String,
+    /// Its name.
+    pub name: Ident,
+    /// Its parameters.
+    pub parameters: Vec<Ident>,
+    /// What it is for.
+    pub documentation: Option<String>,
+    /// True if it is declared primitive.
+    pub primitive: bool,
+    /// The duration declared.
+    pub duration: Option<DurationOf>,
+    /// What has to hold.
+    pub requires: Option<Condition>,
+    /// What it brings about.
+    pub effect: Option<Condition>,
+    /// What it does.
+    pub body: Vec<Body>,
+    /// The whole definition.
+    #[serde(skip)]
+    pub span: Span,
+    /// True if a part of it could not be understood, which has been reported.
+    #[serde(skip)]
+    pub damaged: bool,
+}
+
+/// `(duration (simple ...) :contingent t)`.
+#[derive(Clone, Debug, Serialize)]
+pub struct DurationOf {
+    /// From start to end.
+    pub bounds: Bounds,
+    /// True if Nature decides.
+    pub contingent: bool,
+    /// How early and late the news of the end may be, if anything is said about it.
+    pub delay: Option<Bounds>,
+    /// The declaration.
+    #[serde(skip)]
+    pub span: Span,
+}
+
+/// An interval of durations.
+#[derive(Clone, Debug, Serialize)]
+pub struct Bounds {
+    /// The least.
+    pub lower: Option<Amount>,
+    /// The most.
+    pub upper: Option<Amount>,
+    /// Where it is written.
+    #[serde(skip)]
+    pub span: Span,
+}
+
+/// A duration as written.
+#[derive(Clone, Debug)]
+pub struct Amount {
+    /// Its value.
+    pub kind: AmountKind,
+    /// Where.
+    pub span: Span,
+}
+
+/// The ways to write a duration.
+#[derive(Clone, Debug)]
+pub enum AmountKind {
+    /// A number of seconds, or of another unit.
+    Number(Duration),
+    /// `:infinity`.
+    Infinite,
+    /// A named number or a parameter.
+    Named(Ident),
+    /// Something that has been reported.
+    Error,
+}
+
+/// A form of a body.
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Body {
+    /// `(name arg...)`.
+    Call(Call),
+    /// `(sequence ...)`.
+    Sequence(Group),
+    /// `(parallel ...)`.
+    Parallel(Group),
+    /// `(with-temporal-constraint ...)`.
+    WithTemporalConstraint(Within),
+}
+
+/// `(name arg...)`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Call {
+    /// The program called.
+    pub program: Ident,
+    /// What its parameters stand for.
+    pub arguments: Vec<Value>,
+    /// The form.
+    #[serde(skip)]
+    pub span: Span,
+}
+
+/// `(sequence ...)` or `(parallel ...)`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Group {
+    /// True if time may pass between the parts.
+    pub slack: bool,
+    /// The parts.
+    pub body: Vec<Body>,
+    /// The word `sequence` or `parallel`.
+    #[serde(skip)]
+    pub operator: Span,
+    /// The form.
+    #[serde(skip)]
+    pub span: Span,
+}
+
+/// `(with-temporal-constraint ...)`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Within {
+    /// From start to end of the body.
+    pub bounds: Bounds,
+    /// The body.
+    pub body: Vec<Body>,
+    /// The operator.
+    #[serde(skip)]
+    pub operator: Span,
+    /// The form.
+    #[serde(skip)]
+    pub span: Span,
+}
+
+/// A value as written: an argument, or something a slot may contain.
+#[derive(Clone, Debug)]
+pub struct Value {
+    /// What it is.
+    pub kind: ValueKind,
+    /// Where.
+    pub span: Span,
+}
+
+/// The kinds of values.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ValueKind {
+    /// A number.
+    Number(Duration),
+    /// A string.
+    Text(String),
+    /// `t`.
+    True,
+    /// `nil`.
+    Nil,
+    /// A keyword, or a quoted symbol.
+    Symbol(String),
+    /// A name that stands for something.
+    Name(Option<String>, String),
+    /// Anything else, carried along as it is written.
+    Other(String),
+}
+
+/// A condition or an effect.
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Condition {
+    /// All of these.
+    And(Vec<Condition>),
+    /// One of these.
+    Or(Vec<Condition>),
+    /// Not this.
+    Not(Box<Condition>),
+    /// At the start.
+    AtStart(Box<Condition>),
+    /// At the end.
+    AtEnd(Box<Condition>),
+    /// All the while.
+    OverAll(Box<Condition>),
+    /// `(= (accessor object) value)`.
+    Equal(SlotOf, Value),
+    /// `(accessor object)`.
+    Holds(SlotOf),
+}
+
+/// `(accessor object)`.
+#[derive(Clone, Debug, Serialize)]
+pub struct SlotOf {
+    /// The accessor.
+    pub accessor: Ident,
+    /// Whose slot.
+    pub object: Value,
+}
+
+impl Serialize for Ident {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match &self.package {
+            Some(package) => serializer.collect_str(&format_args!("{package}:{}", self.name)),
+            None => serializer.serialize_str(&self.name),
+        }
+    }
+}
+
+impl Serialize for Amount {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match &self.kind {
+            AmountKind::Number(duration) => seconds(*duration, serializer),
+            AmountKind::Infinite => serializer.serialize_str(":infinity"),
+            AmountKind::Named(name) => name.serialize(serializer),
+            AmountKind::Error => serializer.serialize_str("?"),
+        }
+    }
+}
+
+impl Serialize for Value {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.kind.serialize(serializer)
+    }
+}
+
+impl Serialize for ValueKind {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            ValueKind::Number(number) => seconds(*number, serializer),
+            ValueKind::Text(text) => serializer.collect_str(&format_args!("\"{text}\"")),
+            ValueKind::True => serializer.serialize_str("t"),
+            ValueKind::Nil => serializer.serialize_str("nil"),
+            ValueKind::Symbol(name) => serializer.collect_str(&format_args!("'{name}")),
+            ValueKind::Name(Some(package), name) => serializer.collect_str(&format_args!("{package}:{name}")),
+            ValueKind::Name(None, name) | ValueKind::Other(name) => serializer.serialize_str(name),
+        }
+    }
+}
+
+/// Seconds as a number: whole ones without a fraction. Exact below 2^53 microseconds, as JSON readers are.
+pub(crate) fn seconds<S: Serializer>(duration: Duration, serializer: S) -> Result<S::Ok, S::Error> {
+    let micros = duration.as_micros();
+    if micros % 1_000_000 == 0 {
+        serializer.serialize_i64(micros / 1_000_000)
+    } else {
+        serializer.serialize_f64(micros as f64 / 1e6)
+    }
+}

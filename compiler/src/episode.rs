@@ -1,0 +1,105 @@
+//! The program unfolded: a tree of episodes, each with a start and an end. Serialised for `--emit episodes`.
+
+use kirk_network::{Bound, Duration};
+use serde::{Serialize, Serializer};
+
+use crate::ast::{Condition, ValueKind, seconds};
+use crate::source::Span;
+
+/// One occurrence of a program or of a form of a body, from its start event to its end event.
+#[derive(Clone, Debug, Serialize)]
+pub struct Episode {
+    /// Its name: its events are `name:start` and `name:end`.
+    pub name: String,
+    /// What it is an occurrence of.
+    pub kind: Kind,
+    /// True if no user wrote the name.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub internal: bool,
+    /// What its parameters stand for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub arguments: Vec<ValueKind>,
+    /// True if time may pass between its parts.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slack: Option<bool>,
+    /// From its start to its end, if something is said about that.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub duration: Option<Interval>,
+    /// True if Nature decides the duration.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub contingent: bool,
+    /// How early and late the news of its end may be.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub delay: Option<Interval>,
+    /// What has to hold.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub requires: Option<Condition>,
+    /// What it brings about.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub effect: Option<Condition>,
+    /// Its parts, in source order.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub parts: Vec<Episode>,
+    /// The call or the operator.
+    #[serde(skip)]
+    pub span: Span,
+}
+
+/// What an episode is an occurrence of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// A primitive program.
+    Primitive,
+    /// A program with a body.
+    Program,
+    /// `sequence`.
+    Sequence,
+    /// `parallel`.
+    Parallel,
+    /// `with-temporal-constraint`.
+    WithTemporalConstraint,
+}
+
+/// An interval of durations.
+#[derive(Clone, Copy, Debug)]
+pub struct Interval {
+    /// The least.
+    pub lower: Duration,
+    /// The most.
+    pub upper: Bound,
+    /// Where the least is written.
+    pub lower_span: Span,
+    /// Where the most is written.
+    pub upper_span: Span,
+    /// The form that says so.
+    pub span: Span,
+}
+
+impl Kind {
+    /// The word a user writes for it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Kind::Primitive | Kind::Program => "program",
+            Kind::Sequence => "sequence",
+            Kind::Parallel => "parallel",
+            Kind::WithTemporalConstraint => "with-temporal-constraint",
+        }
+    }
+}
+
+/// `[lower, upper]`, the upper bound null if there is none.
+impl Serialize for Interval {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        struct Seconds(Bound);
+        impl Serialize for Seconds {
+            fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                match self.0 {
+                    Bound::Finite(duration) => seconds(duration, serializer),
+                    Bound::Infinite => serializer.serialize_none(),
+                }
+            }
+        }
+        serializer.collect_seq([Seconds(Bound::Finite(self.lower)), Seconds(self.upper)])
+    }
+}

@@ -1,0 +1,209 @@
+//! Episodes to a delay STNU, and for every constraint of it the place and the words it comes from.
+
+use kirk_network::{Bound, ContingentLink, Delay, Duration, Event, EventId, Name, Network, Requirement};
+
+use crate::episode::{Episode, Interval, Kind};
+use crate::source::Span;
+
+/// What a program is compiled to.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The network, not merged: every "at the same time" is a requirement [0, 0].
+    pub network: Network,
+    /// Where its constraints come from.
+    pub origins: Origins,
+    /// The name of the program to start from, where it is defined.
+    pub entry: Span,
+}
+
+/// Where the constraints of a network come from.
+#[derive(Clone, Debug, Default)]
+pub struct Origins {
+    /// For each requirement of the network.
+    pub requirements: Vec<Origin>,
+    /// For each contingent link of the network.
+    pub contingents: Vec<Origin>,
+}
+
+/// Where a constraint comes from.
+#[derive(Clone, Debug)]
+pub struct Origin {
+    /// The form that says so.
+    pub span: Span,
+    /// What it says, as part of a sentence.
+    pub text: String,
+    /// What kind of constraint it is.
+    pub kind: OriginKind,
+    /// Whose start and end it is about: `shower`, "the sequence".
+    pub subject: String,
+    /// Where the lower and the upper bound are written, and the shortest and the longest delay.
+    pub places: [Span; 4],
+}
+
+/// The kinds of constraints a program gives rise to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OriginKind {
+    /// How long an activity takes, as we decide.
+    Duration,
+    /// How long an activity takes, as Nature decides.
+    Contingent,
+    /// `with-temporal-constraint`.
+    Constraint,
+    /// Two events at the same time.
+    Join,
+    /// Two events one after the other.
+    Order,
+}
+
+/// Builds the network. `None` only if the tree is not what `expand` makes.
+pub fn lower(root: &Episode) -> Option<Plan> {
+    let mut lowering =
+        Lowering { events: Vec::new(), requirements: Vec::new(), contingents: Vec::new(), origins: Origins::default() };
+    lowering.episode(root);
+    let Lowering { events, requirements, contingents, origins } = lowering;
+    let network = Network::new(root.name.clone(), EventId(0), events, requirements, contingents).ok()?;
+    Some(Plan { network, origins, entry: root.span })
+}
+
+struct Lowering {
+    events: Vec<Event>,
+    requirements: Vec<Requirement>,
+    contingents: Vec<ContingentLink>,
+    origins: Origins,
+}
+
+type Ends = (EventId, EventId);
+
+impl Lowering {
+    /// Adds an episode with all its parts; returns its start and its end.
+    fn episode(&mut self, episode: &Episode) -> Ends {
+        let ends = (self.event(episode, "start"), self.event(episode, "end"));
+        if let Some(interval) = &episode.duration {
+            self.duration(episode, interval, ends);
+        }
+        let subject = subject(episode);
+        let slack = episode.slack == Some(true);
+        match episode.kind {
+            Kind::Primitive => {}
+            Kind::Parallel => {
+                for part in &episode.parts {
+                    let (start, end) = self.episode(part);
+                    let inner = described(part);
+                    let (kind, starts, stops) = if slack {
+                        (
+                            OriginKind::Order,
+                            format!("{inner} starts after {subject} starts"),
+                            format!("{inner} ends before {subject} ends"),
+                        )
+                    } else {
+                        (
+                            OriginKind::Join,
+                            format!("{inner} starts together with the others here (no slack)"),
+                            format!("{inner} ends together with the others here (no slack)"),
+                        )
+                    };
+                    self.link(ends.0, start, kind, episode, starts);
+                    self.link(end, ends.1, kind, episode, stops);
+                }
+            }
+            Kind::Program | Kind::Sequence | Kind::WithTemporalConstraint => {
+                let kind = if slack { OriginKind::Order } else { OriginKind::Join };
+                let mut last = ends.0;
+                let mut before: Option<String> = None;
+                for part in &episode.parts {
+                    let (start, end) = self.episode(part);
+                    let inner = described(part);
+                    let text = match (&before, slack) {
+                        (None, true) => format!("{inner} starts after {subject} starts"),
+                        (None, false) => format!("{inner} starts when {subject} starts"),
+                        (Some(before), true) => format!("{inner} starts after {before} ends"),
+                        (Some(before), false) => format!("{inner} starts when {before} ends (no slack)"),
+                    };
+                    self.link(last, start, kind, episode, text);
+                    last = end;
+                    before = Some(inner);
+                }
+                if let Some(before) = before {
+                    let text = match slack {
+                        true => format!("{subject} ends after {before} ends"),
+                        false => format!("{subject} ends when {before} ends"),
+                    };
+                    self.link(last, ends.1, kind, episode, text);
+                }
+            }
+        }
+        if episode.parts.is_empty() && episode.kind != Kind::Primitive {
+            self.link(ends.0, ends.1, OriginKind::Join, episode, format!("{subject} is empty and takes no time"));
+        }
+        ends
+    }
+
+    fn event(&mut self, episode: &Episode, end: &str) -> EventId {
+        let name = Name { text: format!("{}:{end}", episode.name), internal: episode.internal };
+        self.events.push(Event { names: vec![name] });
+        EventId(self.events.len() as u32 - 1)
+    }
+
+    fn link(&mut self, from: EventId, to: EventId, kind: OriginKind, episode: &Episode, text: String) {
+        let zero = Bound::Finite(Duration::ZERO);
+        let upper = if kind == OriginKind::Join { zero } else { Bound::Infinite };
+        self.requirements.push(Requirement { from, to, lower: zero, upper });
+        let (span, subject) = (episode.span, subject(episode));
+        self.origins.requirements.push(Origin { span, text, kind, subject, places: [span; 4] });
+    }
+
+    fn duration(&mut self, episode: &Episode, interval: &Interval, (from, to): Ends) {
+        let subject = subject(episode);
+        let takes = range(interval);
+        let mut places = [interval.lower_span, interval.upper_span, interval.span, interval.span];
+        let upper = match interval.upper {
+            Bound::Finite(upper) if episode.contingent => upper,
+            bound => {
+                let (kind, text) = match episode.kind {
+                    Kind::Primitive => (OriginKind::Duration, format!("{subject} takes {takes}")),
+                    _ => (OriginKind::Constraint, format!("this takes {takes} from start to end")),
+                };
+                self.requirements.push(Requirement { from, to, lower: Bound::Finite(interval.lower), upper: bound });
+                self.origins.requirements.push(Origin { span: interval.span, text, kind, subject, places });
+                return;
+            }
+        };
+        let mut text = format!("{subject} takes {takes}, Nature decides");
+        let mut delay = Delay::NONE;
+        if let Some(late) = &episode.delay {
+            delay = Delay { min: late.lower, max: late.upper };
+            places[2] = late.lower_span;
+            places[3] = late.upper_span;
+            text.push_str(&format!(", and the news of its end comes {} later", range(late)));
+        }
+        self.contingents.push(ContingentLink { from, to, lower: interval.lower, upper, delay });
+        self.origins.contingents.push(Origin { span: interval.span, text, kind: OriginKind::Contingent, subject, places });
+    }
+}
+
+/// An episode as the subject of a sentence about itself.
+fn subject(episode: &Episode) -> String {
+    match episode.internal {
+        true => format!("this `{}`", episode.kind.word()),
+        false => format!("`{}`", episode.name),
+    }
+}
+
+/// An episode in a sentence about the one around it.
+fn described(episode: &Episode) -> String {
+    match episode.internal {
+        true => format!("the `{}` inside", episode.kind.word()),
+        false => format!("`{}`", episode.name),
+    }
+}
+
+/// `15 to 20 s`.
+fn range(interval: &Interval) -> String {
+    match interval.upper {
+        Bound::Finite(upper) if upper == interval.lower => format!("{upper} s"),
+        Bound::Finite(upper) if interval.lower == Duration::ZERO => format!("at most {upper} s"),
+        Bound::Finite(upper) => format!("{} to {upper} s", interval.lower),
+        Bound::Infinite if interval.lower == Duration::ZERO => "any time".to_string(),
+        Bound::Infinite => format!("at least {} s", interval.lower),
+    }
+}

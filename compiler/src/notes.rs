@@ -1,0 +1,96 @@
+//! Notes on models that are legal and may surprise.
+
+use std::collections::BTreeMap;
+
+use kirk_network::{Bound, Delay, Duration, Network};
+
+use crate::code::Code;
+use crate::diagnostic::Diagnostic;
+use crate::episode::{Episode, Kind};
+use crate::form::clip;
+use crate::lower::Origins;
+use crate::source::Span;
+
+/// Notes the activities that start at the true end of one whose end is heard late.
+///
+/// "At the same time" makes the two events one, so the start happens when the end does, and not when it is heard.
+pub fn notes_on_merging(network: &Network, origins: &Origins, root: &Episode) -> Vec<Diagnostic> {
+    let mut classes = Classes { parent: (0..network.events().len() as u32).collect() };
+    for requirement in network.requirements() {
+        let zero = Bound::Finite(Duration::ZERO);
+        if requirement.lower == zero && requirement.upper == zero {
+            classes.join(requirement.from.0, requirement.to.0);
+        }
+    }
+    // For every class, the delayed links that end in it.
+    let mut delayed: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    for (index, link) in network.contingents().iter().enumerate() {
+        if link.delay != Delay::NONE {
+            delayed.entry(classes.find(link.to.0)).or_default().push(index);
+        }
+    }
+    if delayed.is_empty() {
+        return Vec::new();
+    }
+    let mut notes = Vec::new();
+    let mut event = 0_u32;
+    let mut open = vec![root];
+    // The events were numbered in this order: the start and the end of an episode, then its parts.
+    while let Some(episode) = open.pop() {
+        let class = classes.find(event);
+        if episode.kind == Kind::Primitive
+            && let Some([link]) = delayed.get(&class).map(Vec::as_slice)
+        {
+            let contingent = &network.contingents()[*link];
+            let Some(origin) = origins.contingents.get(*link) else { break };
+            if contingent.from.0 != event {
+                notes.push(note(episode, &origin.subject, contingent.delay, origin.places));
+            }
+        }
+        event += 2;
+        open.extend(episode.parts.iter().rev());
+    }
+    notes
+}
+
+fn note(episode: &Episode, before: &str, delay: Delay, places: [Span; 4]) -> Diagnostic {
+    let heard = match delay.max {
+        Bound::Finite(max) if max == delay.min => format!("heard {max} s later"),
+        Bound::Finite(max) => format!("heard {}-{max} s later", delay.min),
+        Bound::Infinite if delay.min == Duration::ZERO => "perhaps never heard".to_string(),
+        Bound::Infinite => format!("heard {} s later or never", delay.min),
+    };
+    let name = clip(&episode.name);
+    Diagnostic::note(
+        Code::StartsAtDelayedEnd,
+        episode.span,
+        format!("`{name}` starts at the true end of {before}, which is {heard}"),
+    )
+    .primary("starts without slack after an end that is heard late")
+    .label(places[3], "the news is this late")
+    .help(format!(
+        "The two events are one moment, and nobody knows of it before the news. If `{name}` is started by the executive, \
+         put the two into a `(sequence (:slack t) ...)`."
+    ))
+}
+
+struct Classes {
+    parent: Vec<u32>,
+}
+
+impl Classes {
+    fn find(&mut self, mut event: u32) -> u32 {
+        while self.parent[event as usize] != event {
+            let grand = self.parent[self.parent[event as usize] as usize];
+            self.parent[event as usize] = grand;
+            event = grand;
+        }
+        event
+    }
+
+    fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.find(a), self.find(b));
+        let (low, high) = (a.min(b), a.max(b));
+        self.parent[high as usize] = low;
+    }
+}

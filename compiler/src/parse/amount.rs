@@ -1,0 +1,180 @@
+//! Durations: `15`, `1.5`, `1/2`, `1d0`, `(minutes 5)`, `:infinity`, `*name*`.
+
+use kirk_network::{Duration, ParseDurationError};
+
+use super::ident;
+use crate::ast::{Amount, AmountKind, Ident};
+use crate::code::Code;
+use crate::diagnostic::Diagnostic;
+use crate::form::{Form, FormKind, clip};
+use crate::nearest::did_you_mean;
+use crate::problem::Problems;
+
+const UNITS: [(&str, i128); 5] =
+    [("microseconds", 1), ("seconds", 1_000_000), ("minutes", 60_000_000), ("hours", 3_600_000_000), ("days", 86_400_000_000)];
+
+/// Reads a duration that is not negative. `what` names it in messages.
+pub(super) fn amount(form: &Form, what: &str, problems: &mut Problems) -> Amount {
+    let kind = match kind(form, what, 1_000_000, problems) {
+        AmountKind::Number(value) if value < Duration::ZERO => {
+            problems.push(
+                Diagnostic::error(Code::Negative, form.span, format!("{what} is negative"))
+                    .primary(format!("{value} s"))
+                    .help("A bound says how much time passes from a start to an end, which is never less than 0."),
+            );
+            AmountKind::Error
+        }
+        kind => kind,
+    };
+    Amount { kind, span: form.span }
+}
+
+/// The number of microseconds of a number as written, in units of `unit` microseconds.
+pub(super) fn number(text: &str, unit: i128) -> Result<Duration, ParseDurationError> {
+    // Exact: numerator and denominator as integers, as long as they are of a sensible length.
+    let (negative, text) = text.strip_prefix('-').map_or((false, text), |rest| (true, rest));
+    let (top, bottom) = match text.split_once('/') {
+        Some((top, bottom)) => (integer(top)?, integer(bottom)?),
+        None => {
+            let at = text.find(['e', 'd', 'f', 's', 'l']);
+            let (mantissa, exponent) = at.map_or((text, "0"), |at| (&text[..at], &text[at + 1..]));
+            let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+            let fraction = fraction.trim_end_matches('0');
+            let digits = integer(&format!("0{whole}{fraction}"))?;
+            if digits == 0 {
+                return Ok(Duration::ZERO);
+            }
+            let exponent = exponent.strip_prefix('+').unwrap_or(exponent);
+            let exponent: i64 = exponent.parse().unwrap_or(if exponent.starts_with('-') { -1_000 } else { 1_000 });
+            let power = exponent.saturating_sub(fraction.len() as i64);
+            match u32::try_from(power.unsigned_abs()).ok().and_then(|n| 10_i128.checked_pow(n)) {
+                Some(scale) if power < 0 => (digits, scale),
+                Some(scale) => (digits.checked_mul(scale).ok_or(ParseDurationError::TooLarge)?, 1),
+                None if power < 0 => return Err(ParseDurationError::TooPrecise),
+                None => return Err(ParseDurationError::TooLarge),
+            }
+        }
+    };
+    let micros = top.checked_mul(unit).ok_or(ParseDurationError::TooLarge)?;
+    if bottom == 0 {
+        return Err(ParseDurationError::NotANumber);
+    }
+    if micros / bottom > i128::from(Duration::MAX.as_micros()) {
+        return Err(ParseDurationError::TooLarge);
+    }
+    if micros % bottom != 0 {
+        return Err(ParseDurationError::TooPrecise);
+    }
+    let micros = (micros / bottom) as i64;
+    Ok(Duration::from_micros(if negative { -micros } else { micros }))
+}
+
+fn integer(text: &str) -> Result<i128, ParseDurationError> {
+    match text.trim_start_matches('0') {
+        "" => Ok(0),
+        digits => digits.parse().map_err(|_| ParseDurationError::TooLarge),
+    }
+}
+
+fn kind(form: &Form, what: &str, unit: i128, problems: &mut Problems) -> AmountKind {
+    match &form.kind {
+        FormKind::Number(text) => match number(text, unit) {
+            Ok(value) => return AmountKind::Number(value),
+            Err(error) => problems.push(inexact(form, what, text, error)),
+        },
+        FormKind::Keyword(word) if matches!(word.as_str(), "infinity" | "inf" | "+infinity") => return AmountKind::Infinite,
+        FormKind::Symbol(symbol) if !matches!(symbol.name.as_str(), "t" | "nil") => {
+            match suffix(&symbol.name) {
+                Some(help) => problems.push(not_a_number(form, what).help(help)),
+                None => {
+                    let name = ident(form).unwrap_or(Ident { package: None, name: String::new(), span: form.span });
+                    return AmountKind::Named(name);
+                }
+            };
+        }
+        FormKind::List(_) => match form.call() {
+            Some((word, [inner])) => match UNITS.iter().find(|(name, _)| *name == word || name.strip_suffix('s') == Some(word)) {
+                Some((_, micros)) => match kind(inner, what, *micros, problems) {
+                    AmountKind::Named(_) => problems.push(
+                        not_a_number(inner, what).help("A unit is applied to a number: name the duration with its unit instead, as in `(defparameter *wait* (minutes 5))`."),
+                    ),
+                    other => return other,
+                },
+                None => {
+                    let message = format!("`{}` is not a unit of time", clip(word));
+                    problems.push(
+                        Diagnostic::error(Code::UnknownUnit, form.span, message)
+                            .primary(format!("{what} was expected"))
+                            .help("The units are `(seconds 90)`, `(minutes 5)`, `(hours 1.5)` and `(days 1)`; kirk does not calculate.")
+                            .maybe_help(did_you_mean(word, UNITS.map(|(name, _)| name))),
+                    );
+                }
+            },
+            _ => problems.push(not_a_number(form, what)),
+        },
+        FormKind::Error => {}
+        _ => problems.push(not_a_number(form, what)),
+    }
+    AmountKind::Error
+}
+
+fn not_a_number(form: &Form, what: &str) -> Diagnostic {
+    Diagnostic::error(Code::NotANumber, form.span, format!("{what} is not a number"))
+        .primary(format!("a duration was expected, not {}", form.describe()))
+        .help("Write seconds (`15`, `1.5`, `1/2`), a unit (`(minutes 5)`), a named number (`*wait*`) or `:infinity`.")
+}
+
+fn inexact(form: &Form, what: &str, text: &str, error: ParseDurationError) -> Diagnostic {
+    let text = clip(text);
+    match error {
+        ParseDurationError::TooPrecise => {
+            Diagnostic::error(Code::NotExact, form.span, format!("{what} is not a whole number of microseconds"))
+                .primary(format!("{text} would have to be rounded"))
+                .help("Kirk counts in microseconds and never rounds a bound: write it with at most six decimals.")
+        }
+        ParseDurationError::TooLarge => Diagnostic::error(Code::TooLarge, form.span, format!("{what} is too large"))
+            .primary("more than 10 billion seconds")
+            .help("For \"no limit\" leave the bound out or write `:infinity`."),
+        ParseDurationError::NotANumber => not_a_number(form, what),
+    }
+}
+
+/// Advice for `15s`, `5min` and the like.
+fn suffix(name: &str) -> Option<String> {
+    let at = name.find(|c: char| !c.is_ascii_digit() && c != '.').filter(|at| *at > 0)?;
+    let (digits, unit) = name.split_at(at);
+    Some(match unit {
+        "s" | "sec" | "secs" | "second" | "seconds" => format!("A plain number is seconds: write `{digits}`."),
+        "m" | "min" | "mins" | "minute" | "minutes" => format!("Write `(minutes {digits})`."),
+        "h" | "hr" | "hour" | "hours" => format!("Write `(hours {digits})`."),
+        "d" | "day" | "days" => format!("Write `(days {digits})`."),
+        _ => "Write seconds (`15`), a unit (`(minutes 5)`), a named number (`*wait*`) or `:infinity`.".to_string(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_exact_or_refused() {
+        let micros = |text: &str, unit| number(text, unit).map(Duration::as_micros);
+        assert_eq!(micros("15", 1_000_000), Ok(15_000_000));
+        assert_eq!(micros("15.", 1_000_000), Ok(15_000_000));
+        assert_eq!(micros(".5", 1_000_000), Ok(500_000));
+        assert_eq!(micros("-1.5d0", 1_000_000), Ok(-1_500_000));
+        assert_eq!(micros("1e3", 1_000_000), Ok(1_000_000_000));
+        assert_eq!(micros("25e-1", 1_000_000), Ok(2_500_000));
+        assert_eq!(micros("1/2", 1_000_000), Ok(500_000));
+        assert_eq!(micros("1/3", 60_000_000), Ok(20_000_000));
+        assert_eq!(micros("1/3", 1_000_000), Err(ParseDurationError::TooPrecise));
+        assert_eq!(micros("1/0", 1_000_000), Err(ParseDurationError::NotANumber));
+        assert_eq!(micros("0.0000001", 1_000_000), Err(ParseDurationError::TooPrecise));
+        assert_eq!(micros("1e-99999999999999999999", 1_000_000), Err(ParseDurationError::TooPrecise));
+        assert_eq!(micros("1e99999999999999999999", 1_000_000), Err(ParseDurationError::TooLarge));
+        assert_eq!(micros("0e99999999999999999999", 1_000_000), Ok(0));
+        assert_eq!(micros("10000000000", 1_000_000), Ok(10_000_000_000_000_000));
+        assert_eq!(micros("10000000000.000001", 1_000_000), Err(ParseDurationError::TooLarge));
+        assert_eq!(micros("1000000", 86_400_000_000), Err(ParseDurationError::TooLarge));
+    }
+}

@@ -1,0 +1,56 @@
+//! The one place every phase reports to.
+
+use std::collections::{BTreeMap, HashSet};
+
+use crate::code::Code;
+use crate::diagnostic::{Diagnostic, Severity};
+use crate::source::Span;
+
+/// How many messages about one source are kept; the rest are counted.
+pub const MAX_PER_SOURCE: usize = 200;
+
+/// Collects the diagnostics of all phases: each (code, place) once, and a bounded number per source.
+#[derive(Debug, Default)]
+pub struct Problems {
+    list: Vec<Diagnostic>,
+    seen: HashSet<(Code, Span)>,
+    /// For every source: how many are kept, and how many more there were.
+    counts: BTreeMap<u32, (usize, usize)>,
+    errors: bool,
+}
+
+impl Problems {
+    /// Reports a problem, unless the same code was already reported for the same place.
+    pub fn push(&mut self, diagnostic: Diagnostic) {
+        self.errors |= diagnostic.severity == Severity::Error;
+        let counts = self.counts.entry(diagnostic.span.source).or_default();
+        if counts.0 >= MAX_PER_SOURCE {
+            counts.1 += 1;
+        } else if self.seen.insert((diagnostic.code, diagnostic.span)) {
+            counts.0 += 1;
+            self.list.push(diagnostic);
+        }
+    }
+
+    /// True if anything reported so far was an error.
+    pub fn has_errors(&self) -> bool {
+        self.errors
+    }
+
+    /// Everything reported, sorted by place, with a last message for each source that had too many.
+    pub fn into_sorted(mut self) -> Vec<Diagnostic> {
+        self.list.sort_by_key(|d| (d.span, d.severity, d.code));
+        for (source, (_, more)) in self.counts {
+            if more > 0 {
+                let at = self.list.partition_point(|d| d.span.source <= source);
+                let span = self.list.get(at.wrapping_sub(1)).map_or(Span { source, start: 0, end: 0 }, |d| d.span);
+                let message = format!("there are {more} more problems in this source");
+                let rest = Diagnostic::error(Code::TooManyProblems, span, message)
+                    .primary(format!("kirk shows the first {MAX_PER_SOURCE} it finds"))
+                    .help("Put the first ones right and look again: later problems often follow from earlier ones.");
+                self.list.insert(at, rest);
+            }
+        }
+        self.list
+    }
+}

@@ -1,0 +1,392 @@
+//! Text to forms. Never fails: damage is reported, and the next top-level form is read all the same.
+//!
+//! The tokens are those of `grammar/rmpl.pest`, read one at a time; the nesting is kept on a stack of our own, so depth
+//! costs memory and not the stack of the machine. A `(` in the first column that begins a definition while an earlier
+//! form is open means that the earlier form was never closed.
+
+pub(crate) mod foreign;
+mod token;
+
+use crate::code::Code;
+use crate::diagnostic::Diagnostic;
+use crate::form::{Form, FormKind, Symbol, clip};
+use crate::problem::Problems;
+use crate::source::{Source, Span};
+use foreign::{begins_definition, foreign_line, foreign_text};
+use token::{Kind, Token, Tokens};
+
+/// How deep forms may be nested.
+pub const MAX_NESTING: usize = 1_000;
+
+/// Reads the top-level forms of source number `index`.
+pub fn read(source: &Source, index: u32, problems: &mut Problems) -> Vec<Form> {
+    if u32::try_from(source.text.len()).is_err() {
+        let message = "this source is longer than 4 GiB";
+        problems.push(Diagnostic::error(Code::TooLong, Span::new(index, 0, 0), message));
+        return Vec::new();
+    }
+    if let Some(problem) = foreign_text(&source.text, index) {
+        problems.push(problem);
+        return Vec::new();
+    }
+    let before = problems.has_errors();
+    let mut reader = Reader::new(&source.text, index, problems);
+    reader.run();
+    let forms = reader.forms;
+    if forms.is_empty() && problems.has_errors() == before && index == 0 {
+        let message = if source.text.trim().is_empty() {
+            "this source is empty"
+        } else {
+            "this source contains comments but no program"
+        };
+        problems.push(
+            Diagnostic::error(Code::EmptySource, Span::new(index, 0, 0), message)
+                .primary("a program was expected")
+                .help("The smallest program is `(define-control-program main () (sequence ()))`."),
+        );
+    }
+    forms
+}
+
+/// A form whose closing parenthesis has not been seen yet.
+struct Open {
+    at: usize,
+    column: usize,
+    quote: bool,
+    items: Vec<Form>,
+}
+
+struct Reader<'a> {
+    text: &'a str,
+    source: u32,
+    tokens: Tokens<'a>,
+    problems: &'a mut Problems,
+    forms: Vec<Form>,
+    stack: Vec<Open>,
+    /// How many parentheses beyond the nesting limit are open; what is inside them is not built.
+    skipped: usize,
+    /// The first form whose contents are indented as if it had been closed.
+    suspect: Option<usize>,
+    line_start: usize,
+    /// True while nothing but blanks has been seen on this line.
+    first_on_line: bool,
+}
+
+impl<'a> Reader<'a> {
+    fn new(text: &'a str, source: u32, problems: &'a mut Problems) -> Reader<'a> {
+        Reader {
+            text,
+            source,
+            tokens: Tokens::new(text),
+            problems,
+            forms: Vec::new(),
+            stack: Vec::new(),
+            skipped: 0,
+            suspect: None,
+            line_start: 0,
+            first_on_line: true,
+        }
+    }
+
+    fn run(&mut self) {
+        let mut last_end = 0;
+        loop {
+            let token = self.tokens.take();
+            self.note_line(last_end, token.start);
+            last_end = token.end;
+            match token.kind {
+                Kind::End => break,
+                Kind::Open => self.open(token),
+                Kind::Close => self.close(token),
+                Kind::Quote if self.stack.is_empty() => self.stray(token),
+                Kind::Quote => self.push(token.start, true),
+                Kind::UnclosedComment => {
+                    let span = self.span(token.start, token.start + 2);
+                    self.problems.push(
+                        Diagnostic::error(Code::UnclosedComment, span, "this comment is never closed")
+                            .primary("`#|` opens a comment here; `|#` was expected before the end of the text")
+                            .help("Everything after it was left out. A comment to the end of one line begins with `;`."),
+                    );
+                    break;
+                }
+                _ if self.stack.is_empty() => self.stray(token),
+                _ => self.atom(token),
+            }
+            self.first_on_line = false;
+        }
+        if !self.stack.is_empty() {
+            self.unclosed(None);
+        }
+    }
+
+    /// Keeps track of the line the next token is on.
+    fn note_line(&mut self, from: usize, to: usize) {
+        if let Some(newline) = self.text.get(from..to).and_then(|gap| gap.rfind('\n')) {
+            self.line_start = from + newline + 1;
+            self.first_on_line = true;
+        }
+    }
+
+    fn open(&mut self, token: Token) {
+        let column = token.start - self.line_start;
+        if column == 0 && !self.stack.is_empty() && begins_definition(&self.text[token.start..]) {
+            self.unclosed(Some(token.start));
+        }
+        self.push(token.start, false);
+    }
+
+    fn push(&mut self, at: usize, quote: bool) {
+        if self.skipped > 0 || self.stack.len() >= MAX_NESTING {
+            if self.skipped == 0 {
+                let span = self.span(at, at + 1);
+                self.problems.push(
+                    Diagnostic::error(Code::TooDeep, span, format!("forms are nested more than {MAX_NESTING} deep"))
+                        .primary("this is one level too many")
+                        .help("Give the inner part a name of its own with `define-control-program` and call it."),
+                );
+                if let Some(top) = self.stack.last_mut() {
+                    top.items.push(Form { span, kind: FormKind::Error });
+                }
+            }
+            if !quote {
+                self.skipped += 1;
+            }
+            return;
+        }
+        let column = at - self.line_start;
+        if self.first_on_line && self.suspect.is_none() {
+            self.suspect = self.stack.last().filter(|top| !top.quote && column <= top.column).map(|top| top.at);
+        }
+        self.stack.push(Open { at, column, quote, items: Vec::new() });
+    }
+
+    fn close(&mut self, token: Token) {
+        if self.skipped > 0 {
+            self.skipped -= 1;
+            return;
+        }
+        let mut dangling = None;
+        while let Some(top) = self.stack.pop_if(|top| top.quote) {
+            dangling = Some(top.at);
+        }
+        if let Some(at) = dangling {
+            let span = self.span(at, at + 1);
+            self.problems.push(
+                Diagnostic::error(Code::Unreadable, span, "nothing follows this quote")
+                    .primary("a form was expected after `'`"),
+            );
+        }
+        match self.stack.pop() {
+            Some(open) => {
+                let span = self.span(open.at, token.end);
+                self.finish(Form { span, kind: FormKind::List(open.items) });
+            }
+            None => self.stray_close(token),
+        }
+    }
+
+    /// Puts a finished form where it belongs: into the quotes before it, then into the open form or the top level.
+    fn finish(&mut self, mut form: Form) {
+        while let Some(quote) = self.stack.pop_if(|top| top.quote) {
+            let span = self.span(quote.at, form.span.end as usize);
+            form = Form { span, kind: FormKind::Quote(Box::new(form)) };
+        }
+        match self.stack.last_mut() {
+            Some(top) => top.items.push(form),
+            None => {
+                self.suspect = None;
+                self.forms.push(form);
+            }
+        }
+    }
+
+    fn atom(&mut self, token: Token) {
+        let text = &self.text[token.start..token.end];
+        let span = self.span(token.start, token.end);
+        let kind = match token.kind {
+            Kind::String => {
+                // A string that runs over the beginning of a definition has lost its closing quote.
+                let runaway = text.match_indices('\n').any(|(at, _)| begins_definition(&text[at + 1..]));
+                if runaway {
+                    self.unclosed_string(token.start);
+                    return;
+                }
+                FormKind::String(unescape(&text[1..text.len() - 1]))
+            }
+            Kind::UnclosedString => {
+                self.unclosed_string(token.start);
+                return;
+            }
+            Kind::Number => FormKind::Number(text.trim_start_matches('+').to_lowercase()),
+            Kind::Keyword => FormKind::Keyword(text[1..].to_lowercase()),
+            Kind::Uninterned => FormKind::Uninterned(text[2..].to_lowercase()),
+            Kind::Symbol => FormKind::Symbol(symbol(text)),
+            _ => {
+                self.problems.push(unreadable(text, span));
+                FormKind::Error
+            }
+        };
+        if self.skipped == 0 {
+            self.finish(Form { span, kind });
+        }
+    }
+
+    /// Reports a string without an end and goes on with the line after the one it begins on.
+    fn unclosed_string(&mut self, at: usize) {
+        let span = self.span(at, at + 1);
+        self.problems.push(
+            Diagnostic::error(Code::UnclosedString, span, "this string is never closed")
+                .primary("the string begins here; a closing `\"` was expected")
+                .help("Inside a string, a quotation mark is written `\\\"`."),
+        );
+        let line_end = self.text[at..].find('\n').map_or(self.text.len(), |n| at + n);
+        if self.skipped == 0 {
+            let span = self.span(at, line_end);
+            self.finish(Form { span, kind: FormKind::Error });
+        }
+        self.tokens.seek(line_end);
+    }
+
+    /// Reports the form that is open and gives up all that are.
+    fn unclosed(&mut self, next: Option<usize>) {
+        let outermost = self.stack.first().map_or(0, |open| open.at);
+        let innermost = self.stack.iter().rev().find(|open| !open.quote).map_or(outermost, |open| open.at);
+        let at = self.suspect.unwrap_or(innermost);
+        let missing = self.stack.iter().filter(|open| !open.quote).count() + self.skipped;
+        let name = self.text[at..].split(|c: char| c.is_whitespace() || c == ')').next().unwrap_or("(");
+        let what = match missing {
+            1 => "a `)` is missing".to_string(),
+            _ => format!("{missing} `)` are missing"),
+        };
+        let mut problem = Diagnostic::error(
+            Code::UnclosedForm,
+            self.span(at, at + 1),
+            format!("the form `{}` is never closed", clip(name)),
+        )
+        .primary(format!("{what} for the form that is open here"));
+        if at != outermost {
+            problem = problem.label(self.span(outermost, outermost + 1), "inside the definition that begins here");
+        }
+        problem = match next {
+            Some(next) => problem.label(self.span(next, next + 1), "the next definition begins before it is closed"),
+            None => problem.help("The text ends while it is still open: is the end of the file missing?"),
+        };
+        self.problems.push(problem);
+        self.stack.clear();
+        self.skipped = 0;
+        self.suspect = None;
+    }
+
+    /// A `)` that closes nothing. Forms that fell out of the definition before it are taken back.
+    fn stray_close(&mut self, token: Token) {
+        let mut end = token.end;
+        loop {
+            let next = self.tokens.peek();
+            if next.kind != Kind::Close {
+                break;
+            }
+            end = next.end;
+            self.tokens.take();
+        }
+        let at_line_start = |form: &Form| {
+            let start = form.span.start as usize;
+            start == 0 || self.text.as_bytes().get(start - 1) == Some(&b'\n')
+        };
+        let spilled = self.forms.iter().rposition(|form| at_line_start(form)).map(|at| at + 1);
+        if let Some(from) = spilled {
+            self.forms.truncate(from);
+        }
+        let count = self.text[token.start..end].matches(')').count();
+        let message = match count {
+            1 => "this parenthesis closes nothing".to_string(),
+            _ => "these parentheses close nothing".to_string(),
+        };
+        let mut problem = Diagnostic::error(Code::StrayClose, self.span(token.start, end), message)
+            .primary(if count == 1 { "one `)` too many" } else { "too many `)`" });
+        if let Some(last) = self.forms.last() {
+            let close = last.span.end as usize;
+            problem = problem.label(self.span(close.saturating_sub(1), close), "the definition before it already ends here");
+        }
+        self.problems.push(problem);
+    }
+
+    /// Text outside all forms: reported once for a run of lines, which is left out.
+    fn stray(&mut self, token: Token) {
+        let mut end = token.start;
+        for line in self.text[token.start..].split_inclusive('\n') {
+            let continues = end == token.start || !(line.starts_with(['(', ';']) || line.starts_with("#|"));
+            if !continues {
+                break;
+            }
+            if let Some(definition) = line.match_indices('(').find(|(at, _)| begins_definition(&line[*at..])) {
+                end += definition.0;
+                break;
+            }
+            end += line.len();
+        }
+        let shown = self.text[token.start..end].trim_end();
+        let first = shown.lines().next().unwrap_or("");
+        let span = self.span(token.start, token.start + first.trim_end().len());
+        let problem = match foreign_line(first) {
+            Some(what) => Diagnostic::error(Code::NotRmpl, span, format!("this is {what}, not RMPL"))
+                .primary("a definition in parentheses was expected here")
+                .help("Take it out, or put `;` in front of it to make it a comment."),
+            None => Diagnostic::error(
+                Code::StrayText,
+                span,
+                format!("`{}` stands outside every definition", clip(first.split_whitespace().next().unwrap_or(first))),
+            )
+            .primary("a definition in parentheses was expected here")
+            .help("A comment begins with `;`. A program is `(define-control-program name () ...)`."),
+        };
+        self.problems.push(problem);
+        self.tokens.seek(end.max(token.end.min(self.text.len())).max(token.start + 1));
+        self.line_start = self.text[..self.tokens.position()].rfind('\n').map_or(0, |n| n + 1);
+    }
+
+    fn span(&self, start: usize, end: usize) -> Span {
+        Span::new(self.source, start, end.min(self.text.len()))
+    }
+}
+
+fn symbol(text: &str) -> Symbol {
+    let text = text.to_lowercase();
+    match text.split_once(':') {
+        Some((package, name)) if !package.is_empty() => {
+            let name = name.strip_prefix(':').unwrap_or(name).to_string();
+            Symbol { package: Some(package.to_string()), name }
+        }
+        _ => Symbol { package: None, name: text },
+    }
+}
+
+fn unescape(text: &str) -> String {
+    let mut plain = String::with_capacity(text.len());
+    let mut chars = text.chars();
+    while let Some(c) = chars.next() {
+        plain.extend(if c == '\\' { chars.next() } else { Some(c) });
+    }
+    plain
+}
+
+fn unreadable(text: &str, span: Span) -> Diagnostic {
+    let shown: String = clip(text).escape_debug().collect();
+    let (message, help) = match text.chars().next() {
+        Some('`' | ',') => (
+            format!("`{shown}` is for Lisp macros, which kirk does not run"),
+            Some("Write the form out as it should be."),
+        ),
+        Some('#') => (
+            format!("kirk does not read `{shown}`"),
+            Some("Of the forms that begin with `#`, kirk reads `#:name` and the comment `#| ... |#`."),
+        ),
+        Some('[' | ']' | '{' | '}') => {
+            (format!("`{shown}` has no meaning in RMPL"), Some("Forms are enclosed in round parentheses."))
+        }
+        Some('|' | '\\') => {
+            (format!("kirk does not read `{shown}` in names"), Some("Names are made of letters, digits and `-+*/<>=.!?%&$_~^@`."))
+        }
+        _ => (format!("the character `{shown}` has no meaning here"), None),
+    };
+    Diagnostic::error(Code::Unreadable, span, message).primary("not RMPL").maybe_help(help.map(str::to_string))
+}

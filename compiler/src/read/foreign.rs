@@ -1,0 +1,117 @@
+//! Recognises text that is not RMPL at all, so that it earns one message and not fifty.
+
+use crate::code::Code;
+use crate::diagnostic::Diagnostic;
+use crate::source::Span;
+
+/// The words that begin a top-level form.
+pub(crate) const DEFINITIONS: [&str; 6] =
+    ["define-control-program", "defpackage", "in-package", "defclass", "defparameter", "defconstant"];
+
+/// True if the text begins with `(` and the name of a top-level form.
+pub(super) fn begins_definition(text: &str) -> bool {
+    let Some(rest) = text.strip_prefix('(') else { return false };
+    let word = rest.as_bytes().iter().take(64).position(|b| b.is_ascii_whitespace() || matches!(b, b'(' | b')'));
+    let Some(word) = word.and_then(|end| rest.get(..end)) else { return false };
+    let name = word.rsplit(':').next().unwrap_or(word);
+    DEFINITIONS.iter().any(|known| known.eq_ignore_ascii_case(name))
+}
+
+/// Says what a text is that has nothing to do with RMPL, or is no text.
+pub(super) fn foreign_text(text: &str, source: u32) -> Option<Diagnostic> {
+    let odd = |c: char| c == '\u{FFFD}' || (c.is_control() && !matches!(c, '\n' | '\r' | '\t' | '\u{c}'));
+    if text.starts_with("%PDF") || text.starts_with("PK\u{3}\u{4}") || text.contains('\0') {
+        let at = text.find(odd).unwrap_or(0);
+        return Some(not_text(source, text, at));
+    }
+    if let Some(at) = text.find(odd)
+        && text.chars().filter(|c| odd(*c)).count() * 20 > text.chars().count()
+    {
+        return Some(not_text(source, text, at));
+    }
+    let (start, line) = first_line(text)?;
+    let what = foreign_line(line)?;
+    let has_definition = text.match_indices('(').any(|(at, _)| begins_definition(&text[at..]));
+    (!has_definition).then(|| {
+        Diagnostic::error(
+            Code::NotRmpl,
+            Span::new(source, start, start + line.trim_end().len()),
+            format!("this is {what}, not RMPL"),
+        )
+        .primary("a definition in parentheses was expected here")
+        .help("A mission begins like `(define-control-program main () (sequence (:slack t) (first) (second)))`.")
+    })
+}
+
+/// Names the language of a line that is certainly not RMPL.
+pub(super) fn foreign_line(line: &str) -> Option<&'static str> {
+    let line = line.trim();
+    let first = line.split_whitespace().next().unwrap_or("");
+    let starts = |words: &[&str]| words.iter().any(|word| line.starts_with(word));
+    let prompt = |c: char| line.strip_prefix(c).is_some_and(|rest| rest.starts_with(' '));
+    Some(if line.starts_with("#!") {
+        "a script for another program"
+    } else if prompt('$') || prompt('%') || prompt('>') || is_user_prompt(line) || starts(&["PS C:", "C:\\"]) {
+        "what was typed at a shell prompt"
+    } else if starts(&["kirk run", "kirk check", "kirk compile", "cargo ", "git ", "sudo ", "curl "]) {
+        "a command for the shell"
+    } else if starts(&["<?xml", "<graphml"]) {
+        "XML"
+    } else if starts(&["<!DOCTYPE", "<!doctype", "<html"]) {
+        "HTML"
+    } else if line.starts_with('<') {
+        "XML or HTML"
+    } else if line.starts_with('{') || (line.starts_with('[') && !line.starts_with("[(")) {
+        "JSON"
+    } else if starts(&["(define (domain", "(define (problem"]) {
+        "PDDL"
+    } else if starts(&["def ", "import ", "from ", "class "]) && (line.ends_with(':') || !line.contains('(')) {
+        "Python"
+    } else if starts(&["let ", "const ", "var ", "function ", "export "]) {
+        "JavaScript or another language with `let` and `=`"
+    } else if starts(&["fn ", "use ", "pub ", "impl ", "mod "]) {
+        "Rust"
+    } else if starts(&["#include", "#define", "int ", "void "]) {
+        "C or C++"
+    } else if starts(&["package ", "public ", "private "]) {
+        "Java or Go"
+    } else if line == "---" || (first.ends_with(':') && first.len() > 1 && !first.starts_with(':')) {
+        "YAML or a list of settings"
+    } else if starts(&["# ", "## ", "```"]) {
+        "Markdown, or a comment of another language"
+    } else if line.starts_with("//") || line.starts_with("/*") {
+        "a comment of another language"
+    } else if line.split_whitespace().nth(1) == Some("=") {
+        "an assignment of another language"
+    } else {
+        return None;
+    })
+}
+
+fn not_text(source: u32, text: &str, at: usize) -> Diagnostic {
+    let length = text[at..].chars().next().map_or(0, char::len_utf8);
+    Diagnostic::error(Code::NotText, Span::new(source, at, at + length), "this is not text")
+        .primary("no text contains this")
+        .help("kirk reads RMPL programs as UTF-8 text; this looks like a binary file.")
+}
+
+/// The first line that is neither blank nor a comment, and where it begins.
+fn first_line(text: &str) -> Option<(usize, &str)> {
+    let mut at = 0;
+    for line in text.split_inclusive('\n') {
+        let trimmed = line.trim_start_matches(|c: char| c.is_whitespace() || c == '\u{FEFF}');
+        if !trimmed.is_empty() && !trimmed.starts_with(';') {
+            return Some((at + line.len() - trimmed.len(), trimmed));
+        }
+        at += line.len();
+    }
+    None
+}
+
+/// `user@host:~$ command`.
+fn is_user_prompt(line: &str) -> bool {
+    let Some((user, rest)) = line.split_once('@') else { return false };
+    !user.is_empty()
+        && user.chars().all(|c| c.is_alphanumeric() || matches!(c, '_' | '-' | '.' | '('))
+        && (rest.contains("$ ") || rest.contains("# ") || rest.contains("% ") || rest.ends_with('$'))
+}

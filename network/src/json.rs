@@ -84,9 +84,20 @@ struct ContingentText {
     delay: Option<(Seconds, Option<Seconds>)>,
 }
 
-/// A JSON number read digit by digit.
-#[derive(Clone, Copy)]
-struct Seconds(Duration);
+/// A duration as a JSON number of seconds, read and written digit by digit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Seconds(pub Duration);
+
+/// Shorthand for [`Seconds`].
+pub fn seconds(duration: Duration) -> Seconds {
+    Seconds(duration)
+}
+
+impl Serialize for Seconds {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        number(&self.0).serialize(serializer)
+    }
+}
 
 impl<'de> Deserialize<'de> for Seconds {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Seconds, D::Error> {
@@ -346,10 +357,10 @@ impl Serialize for RequirementDocument<'_> {
         map.serialize_entry("from", self.network.id(self.requirement.from))?;
         map.serialize_entry("to", self.network.id(self.requirement.to))?;
         if let Bound::Finite(lower) = self.requirement.lower {
-            map.serialize_entry("lower", &number(&lower))?;
+            map.serialize_entry("lower", &Seconds(lower))?;
         }
         if let Bound::Finite(upper) = self.requirement.upper {
-            map.serialize_entry("upper", &number(&upper))?;
+            map.serialize_entry("upper", &Seconds(upper))?;
         }
         map.end()
     }
@@ -365,18 +376,18 @@ impl Serialize for LinkDocument<'_> {
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("from", self.network.id(self.link.from))?;
         map.serialize_entry("to", self.network.id(self.link.to))?;
-        map.serialize_entry("lower", &number(&self.link.lower))?;
-        map.serialize_entry("upper", &number(&self.link.upper))?;
+        map.serialize_entry("lower", &Seconds(self.link.lower))?;
+        map.serialize_entry("upper", &Seconds(self.link.upper))?;
         if self.link.delay != Delay::NONE {
-            let max = self.link.delay.max.finite().map(|max| number(&max));
-            map.serialize_entry("delay", &(number(&self.link.delay.min), max))?;
+            let max = self.link.delay.max.finite().map(Seconds);
+            map.serialize_entry("delay", &(Seconds(self.link.delay.min), max))?;
         }
         map.end()
     }
 }
 
 /// Seconds as a JSON number with all its digits.
-pub fn number(seconds: &impl std::fmt::Display) -> Box<RawValue> {
+fn number(seconds: &impl std::fmt::Display) -> Box<RawValue> {
     RawValue::from_string(seconds.to_string())
         .unwrap_or_else(|error| unreachable!("seconds are a JSON number: {error}"))
 }

@@ -105,8 +105,9 @@ struct BestNews {
 }
 
 impl Place {
-    fn is_uncertain(&self) -> bool {
-        self.earliest != self.latest
+    /// True if the event is not known the moment it happens: news of its children may tell of it first, or more.
+    fn is_heard_late(&self) -> bool {
+        self.earliest != self.latest || self.heard_by.is_some() && self.latest != 0
     }
 }
 
@@ -172,7 +173,7 @@ impl<'a> Reducer<'a> {
         let parent = self.link(root).from;
         let mut base = parent;
         let (mut lower, mut upper) = self.window(root, base)?;
-        let mut inexact = self.place(parent).is_uncertain() || self.place(parent).inexact;
+        let mut inexact = self.place(parent).is_heard_late() || self.place(parent).inexact;
         // A single value, or news that may be equally late whatever happened, tells nothing.
         let news = self.best_news(&group)?.filter(|news| upper - lower > news.max - news.min);
         if let Some(news) = &news {

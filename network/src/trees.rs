@@ -6,26 +6,23 @@ use crate::time::Duration;
 
 /// The contingent links as trees: the root of each is executable.
 #[derive(Clone, Debug)]
-pub struct Trees {
+pub(crate) struct Trees {
     /// Contingent events, every one after its activation.
     pub(crate) parents_first: Vec<EventId>,
     root: Vec<EventId>,
     depth: Vec<u32>,
-    /// For each contingent event the first of the chain of fixed links (l = u) that leads to it.
-    group_root: Vec<EventId>,
     /// Children at a fixed distance, in order.
     twins: Vec<Vec<EventId>>,
 }
 
 impl Trees {
     /// The trees of the links of a network.
-    pub fn new(network: &Network) -> Result<Trees, TooLarge> {
+    pub(crate) fn new(network: &Network) -> Result<Trees, TooLarge> {
         let count = network.events().len();
         let mut trees = Trees {
             parents_first: Vec::with_capacity(network.contingents().len()),
             root: network.event_ids().collect(),
             depth: vec![0; count],
-            group_root: network.event_ids().collect(),
             twins: vec![Vec::new(); count],
         };
         let mut done: Vec<bool> = network.event_ids().map(|event| network.link_of(event).is_none()).collect();
@@ -46,7 +43,6 @@ impl Trees {
                 trees.root[event.index()] = trees.root[parent.index()];
                 trees.depth[event.index()] = trees.depth[parent.index()] + 1;
                 if network.link_of(parent).is_some() && link.lower == link.upper {
-                    trees.group_root[event.index()] = trees.group_root[parent.index()];
                     trees.twins[parent.index()].push(event);
                 }
             }
@@ -54,13 +50,8 @@ impl Trees {
         Ok(trees)
     }
 
-    /// The first event of the chain of fixed links that leads to `event`.
-    pub fn group_root(&self, event: EventId) -> EventId {
-        self.group_root[event.index()]
-    }
-
     /// The group of `root`: itself and all that follow it at a fixed distance, with that distance.
-    pub fn twins_of(&self, network: &Network, root: EventId) -> Vec<(EventId, i64)> {
+    pub(crate) fn twins_of(&self, network: &Network, root: EventId) -> Vec<(EventId, i64)> {
         let mut group = vec![(root, 0)];
         let mut at = 0;
         while at < group.len() {

@@ -1,0 +1,163 @@
+//! The real-time execution of a dispatchable network: what may be executed next, and when. Knows nodes only.
+//!
+//! L. Hunsberger, R. Posenato, *Foundations of dispatchability for simple temporal networks with uncertainty* (RTE*),
+//! 2024. Executing a node looks at its direct neighbours and costs its degree (times the logarithm of the queue).
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use kirk_network::Dispatchable;
+use kirk_network::stnu::{Edge, NONE, Rows};
+
+/// The state of an execution of one dispatchable network; all times in microseconds after the origin.
+#[derive(Clone, Debug)]
+pub(crate) struct Agenda {
+    edges: Vec<Edge>,
+    outgoing: Rows,
+    incoming: Rows,
+    /// The link ending at each node, and the links starting there.
+    ending: Vec<u32>,
+    starting: Rows,
+    waits: Vec<ActiveWait>,
+    waits_for: Rows,
+    waits_of: Rows,
+    nodes: Vec<NodeState>,
+    /// Executable nodes that nothing holds back but time: (time, node). Entries go stale and are then skipped.
+    ready: BinaryHeap<Reverse<(i64, u32)>>,
+}
+
+#[derive(Clone, Debug)]
+struct NodeState {
+    executed: Option<i64>,
+    lower: i64,
+    upper: i64,
+    /// How many nodes must be executed before this one.
+    held_by: u32,
+}
+
+#[derive(Clone, Debug)]
+struct ActiveWait {
+    waiter: u32,
+    weight: i64,
+    /// Until when, once the activation is executed; `None` before, and again when the wait has ended.
+    until: Option<i64>,
+}
+
+impl Agenda {
+    /// Starts with the origin executed at time 0.
+    pub(crate) fn new(net: &Dispatchable) -> Agenda {
+        let count = net.nodes as usize;
+        let mut nodes = vec![NodeState { executed: None, lower: 0, upper: i64::MAX, held_by: 0 }; count];
+        for edge in net.edges.iter().filter(|edge| edge.weight < 0) {
+            nodes[edge.from as usize].held_by += 1;
+        }
+        for wait in &net.waits {
+            nodes[wait.waiter as usize].held_by += 1;
+        }
+        let mut ending = vec![NONE; count];
+        for (index, link) in net.links.iter().enumerate() {
+            ending[link.contingent as usize] = index as u32;
+        }
+        let mut agenda = Agenda {
+            outgoing: Rows::new(net.nodes, net.edges.iter().map(|edge| edge.from)),
+            incoming: Rows::new(net.nodes, net.edges.iter().map(|edge| edge.to)),
+            edges: net.edges.clone(),
+            starting: Rows::new(net.nodes, net.links.iter().map(|link| link.activation)),
+            waits_for: Rows::new(net.links.len() as u32, net.waits.iter().map(|wait| wait.link)),
+            waits_of: Rows::new(net.nodes, net.waits.iter().map(|wait| wait.waiter)),
+            waits: net
+                .waits
+                .iter()
+                .map(|wait| ActiveWait { waiter: wait.waiter, weight: wait.weight, until: None })
+                .collect(),
+            ending,
+            nodes,
+            ready: BinaryHeap::new(),
+        };
+        for node in 1..net.nodes {
+            agenda.offer(node);
+        }
+        agenda.execute(0, 0);
+        agenda
+    }
+
+    /// When a node was executed.
+    pub(crate) fn executed(&self, node: u32) -> Option<i64> {
+        self.nodes[node as usize].executed
+    }
+
+    /// The latest time at which a node may be executed, as far as its neighbours say.
+    pub(crate) fn upper(&self, node: u32) -> i64 {
+        self.nodes[node as usize].upper
+    }
+
+    /// The executable node to execute next and its time: the earliest there is.
+    pub(crate) fn next(&mut self) -> Option<(i64, u32)> {
+        while let Some(&Reverse((time, node))) = self.ready.peek() {
+            if self.nodes[node as usize].executed.is_none() && self.earliest(node) == Some(time) {
+                return Some((time, node));
+            }
+            self.ready.pop();
+        }
+        None
+    }
+
+    /// Executes a node, or says that a contingent node has happened. Returns the links this starts.
+    pub(crate) fn execute(&mut self, node: u32, time: i64) -> Vec<u32> {
+        self.nodes[node as usize].executed = Some(time);
+        for at in 0..self.outgoing.of(node).len() {
+            let Edge { to, weight, .. } = self.edges[self.outgoing.of(node)[at] as usize];
+            if weight >= 0 {
+                let upper = &mut self.nodes[to as usize].upper;
+                *upper = (*upper).min(time.saturating_add(weight));
+            }
+        }
+        for at in 0..self.incoming.of(node).len() {
+            let Edge { from, weight, .. } = self.edges[self.incoming.of(node)[at] as usize];
+            if weight < 0 {
+                let state = &mut self.nodes[from as usize];
+                state.lower = state.lower.max(time.saturating_sub(weight));
+                state.held_by -= 1;
+                self.offer(from);
+            }
+        }
+        let started = self.starting.of(node).to_vec();
+        for &link in &started {
+            for at in 0..self.waits_for.of(link).len() {
+                let wait = &mut self.waits[self.waits_for.of(link)[at] as usize];
+                wait.until = Some(time.saturating_sub(wait.weight));
+                let waiter = wait.waiter;
+                self.nodes[waiter as usize].held_by -= 1;
+                self.offer(waiter);
+            }
+        }
+        let link = self.ending[node as usize];
+        if link != NONE {
+            for at in 0..self.waits_for.of(link).len() {
+                let wait = &mut self.waits[self.waits_for.of(link)[at] as usize];
+                wait.until = None;
+                let waiter = wait.waiter;
+                self.offer(waiter);
+            }
+        }
+        started
+    }
+
+    /// The earliest time for a node nothing holds back, else `None`.
+    fn earliest(&self, node: u32) -> Option<i64> {
+        let state = &self.nodes[node as usize];
+        if state.held_by > 0 || state.executed.is_some() {
+            return None;
+        }
+        let waits = self.waits_of.of(node).iter().filter_map(|&wait| self.waits[wait as usize].until);
+        Some(waits.fold(state.lower, i64::max))
+    }
+
+    fn offer(&mut self, node: u32) {
+        if self.ending[node as usize] == NONE
+            && let Some(time) = self.earliest(node)
+        {
+            self.ready.push(Reverse((time, node)));
+        }
+    }
+}

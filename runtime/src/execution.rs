@@ -1,0 +1,127 @@
+//! The record of an execution: what was fixed when, and why, as `kirk-execution/1` says it.
+
+use kirk_network::json::{Seconds, seconds};
+use kirk_network::{Duration, Time};
+use serde::{Deserialize, Serialize};
+
+/// The `format` of the record written and read here.
+pub const FORMAT: &str = "kirk-execution/1";
+
+/// A finished (or failed) execution. All times are seconds after the origin, exact to a microsecond.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Execution {
+    /// Always [`FORMAT`].
+    pub format: String,
+    /// The control program, or the name of the network.
+    pub program: String,
+    /// Did it come to its end?
+    pub outcome: Outcome,
+    /// What ended it, if it failed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub failure: Option<Failure>,
+    /// When the last event was over.
+    pub makespan: Seconds,
+    /// The seed of a simulation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seed: Option<u64>,
+    /// One row for each name, in time order.
+    pub rows: Vec<Row>,
+}
+
+/// How an execution ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Outcome {
+    /// Every event was executed, and every requirement holds.
+    Completed,
+    /// Something made it impossible to go on.
+    Failed,
+}
+
+/// Why an execution failed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Failure {
+    /// The event at which it failed.
+    pub event: String,
+    /// When it failed.
+    pub time: Seconds,
+    /// One word: `missed-window`, `broken-model`.
+    pub reason: String,
+    /// A sentence for people.
+    pub detail: String,
+}
+
+/// What became of one event, under one of its names.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Row {
+    /// The name.
+    pub event: String,
+    /// When the executive fixed the event; `null` if it never needed to.
+    pub time: Option<Seconds>,
+    /// How it came to be fixed.
+    pub how: How,
+    /// For contingent events: when the news arrived, `null` if it never did.
+    #[serde(default, with = "given", skip_serializing_if = "Option::is_none")]
+    pub observed: Option<Option<Seconds>>,
+    /// For contingent events: the interval in which it must have happened, given all that was heard.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub happened: Option<(Seconds, Seconds)>,
+    /// When it really happened, if that is known (in simulations).
+    #[serde(default, rename = "true", skip_serializing_if = "Option::is_none")]
+    pub truth: Option<Seconds>,
+}
+
+/// How an event came to be fixed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum How {
+    /// Our decision.
+    Dispatched,
+    /// Acted on when the news came.
+    Observed,
+    /// Acted on without hearing it.
+    Imagined,
+    /// Heard early, held until it was safe to act on.
+    Buffered,
+    /// Not heard, and not needed.
+    Never,
+}
+
+impl How {
+    /// The word for it.
+    pub fn word(self) -> &'static str {
+        match self {
+            How::Dispatched => "dispatched",
+            How::Observed => "observed",
+            How::Imagined => "imagined",
+            How::Buffered => "buffered",
+            How::Never => "never",
+        }
+    }
+}
+
+/// A date in the record.
+pub(crate) fn at(time: Time) -> Seconds {
+    seconds(Duration::from_micros(time.as_micros()))
+}
+
+/// A field that tells `null` from absent.
+mod given {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub(super) fn serialize<T: Serialize, S: Serializer>(
+        value: &Option<Option<T>>,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        value.as_ref().and_then(|inner| inner.as_ref()).serialize(serializer)
+    }
+
+    pub(super) fn deserialize<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<Option<Option<T>>, D::Error> {
+        Option::<T>::deserialize(deserializer).map(Some)
+    }
+}

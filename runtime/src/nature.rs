@@ -1,0 +1,186 @@
+//! Nature in a simulation: how long contingent links take and how late their news is.
+
+use kirk_network::{Bound, EventId, Network, Time};
+
+/// How Nature chooses where the observations given leave a choice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Temper {
+    /// Every duration as long as possible, all news as late as possible (none where that is never).
+    #[default]
+    Upper,
+    /// Every duration as short as possible, all news as early as possible.
+    Lower,
+    /// Anything possible.
+    Random,
+}
+
+/// An observation that the model says cannot happen.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Impossible {
+    /// The event observed.
+    pub event: EventId,
+    /// When its news was to arrive.
+    pub time: Time,
+    /// When news of it can arrive at the earliest, the other observations aside.
+    pub earliest: Time,
+    /// And at the latest; `None` if there is no bound.
+    pub latest: Option<Time>,
+}
+
+/// What Nature does with one event.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Deed {
+    /// The contingent event.
+    pub event: EventId,
+    /// When it truly happens.
+    pub truth: Time,
+    /// When its news arrives, if ever.
+    pub news: Option<Time>,
+}
+
+/// Decides, for every tree of contingent links, when all its events happen once its root is executed.
+#[derive(Debug)]
+pub struct Nature<'a> {
+    network: &'a Network,
+    temper: Temper,
+    random: fastrand::Rng,
+    /// For each event, when its news must arrive.
+    observations: Vec<Option<Time>>,
+    children: Vec<Vec<EventId>>,
+}
+
+impl<'a> Nature<'a> {
+    /// Nature for a network, with the observations that must come about.
+    pub fn new(
+        network: &'a Network,
+        temper: Temper,
+        seed: u64,
+        observations: &[(EventId, Time)],
+    ) -> Nature<'a> {
+        let mut by_event = vec![None; network.events().len()];
+        for &(event, time) in observations {
+            by_event[event.index()] = Some(time);
+        }
+        let mut children = vec![Vec::new(); network.events().len()];
+        for link in network.contingents() {
+            children[link.from.index()].push(link.to);
+        }
+        let random = fastrand::Rng::with_seed(seed);
+        Nature { network, temper, random, observations: by_event, children }
+    }
+
+    /// All that follows from executing `root` at `time`, every event after its activation.
+    ///
+    /// # Errors
+    /// The first observation that cannot come about.
+    pub fn begin(&mut self, root: EventId, time: Time) -> Result<Vec<Deed>, Impossible> {
+        let mut deeds: Vec<Deed> = Vec::new();
+        let mut open = vec![(root, time)];
+        while let Some((parent, start)) = open.pop() {
+            for at in 0..self.children[parent.index()].len() {
+                let event = self.children[parent.index()][at];
+                let deed = self.act(event, start, root, time)?;
+                open.push((event, deed.truth));
+                deeds.push(deed);
+            }
+        }
+        Ok(deeds)
+    }
+
+    fn act(
+        &mut self,
+        event: EventId,
+        start: Time,
+        root: EventId,
+        root_time: Time,
+    ) -> Result<Deed, Impossible> {
+        let link = self.link(event);
+        let (start, lower, upper) = (start.as_micros(), link.lower.as_micros(), link.upper.as_micros());
+        let (low, high) = self.required(event);
+        let (low, high) = (low.max(start.saturating_add(lower)), high.min(start.saturating_add(upper)));
+        if low > high {
+            return Err(self.first_impossible(event, root, root_time));
+        }
+        let truth = match self.temper {
+            Temper::Upper => high,
+            Temper::Lower => low,
+            Temper::Random => self.random.i64(low..=high),
+        };
+        let min = link.delay.min.as_micros();
+        let news = match (self.observations[event.index()], link.delay.max) {
+            (Some(given), _) => Some(given.as_micros()),
+            (None, Bound::Finite(max)) => Some(truth.saturating_add(match self.temper {
+                Temper::Upper => max.as_micros(),
+                Temper::Lower => min,
+                Temper::Random => self.random.i64(min..=max.as_micros()),
+            })),
+            (None, Bound::Infinite) => match self.temper {
+                Temper::Upper => None,
+                Temper::Lower => Some(truth.saturating_add(min)),
+                Temper::Random => {
+                    let much_later = min.saturating_add(2 * upper).saturating_add(1_000_000);
+                    self.random.bool().then(|| truth.saturating_add(self.random.i64(min..=much_later)))
+                }
+            },
+        };
+        Ok(Deed { event, truth: Time::from_micros(truth), news: news.map(Time::from_micros) })
+    }
+
+    /// Where the observations of an event and of all that follow it in its tree require it to be.
+    fn required(&self, event: EventId) -> (i64, i64) {
+        let delay = self.link(event).delay;
+        let (mut low, mut high) = match self.observations[event.index()] {
+            None => (i64::MIN, i64::MAX),
+            Some(time) => {
+                let earliest = delay.max.finite().map_or(i64::MIN, |max| time.as_micros() - max.as_micros());
+                (earliest, time.as_micros() - delay.min.as_micros())
+            }
+        };
+        for &child in &self.children[event.index()] {
+            let (link, (child_low, child_high)) = (self.link(child), self.required(child));
+            low = low.max(child_low.saturating_sub(link.upper.as_micros()));
+            high = high.min(child_high.saturating_sub(link.lower.as_micros()));
+        }
+        (low, high)
+    }
+
+    fn first_impossible(&self, event: EventId, root: EventId, root_time: Time) -> Impossible {
+        let mut open = vec![event];
+        let mut first: Option<Impossible> = None;
+        while let Some(event) = open.pop() {
+            open.extend(&self.children[event.index()]);
+            let Some(time) = self.observations[event.index()] else { continue };
+            let found = self.impossible(event, time, root, root_time);
+            let outside =
+                |i: &Impossible| i.time < i.earliest || i.latest.is_some_and(|latest| i.time > latest);
+            // An observation that is impossible by itself says more than one that contradicts another.
+            if first.as_ref().is_none_or(|first| outside(&found) && !outside(first)) {
+                first = Some(found);
+            }
+        }
+        first.unwrap_or(Impossible { event, time: root_time, earliest: root_time, latest: None })
+    }
+
+    fn impossible(&self, event: EventId, time: Time, root: EventId, root_time: Time) -> Impossible {
+        let delay = self.link(event).delay;
+        let (mut earliest, mut latest) = (root_time.as_micros(), root_time.as_micros());
+        let mut at = event;
+        while at != root {
+            let link = self.link(at);
+            earliest = earliest.saturating_add(link.lower.as_micros());
+            latest = latest.saturating_add(link.upper.as_micros());
+            at = link.from;
+        }
+        let latest =
+            delay.max.finite().map(|max| Time::from_micros(latest.saturating_add(max.as_micros())));
+        let earliest = Time::from_micros(earliest.saturating_add(delay.min.as_micros()));
+        Impossible { event, time, earliest, latest }
+    }
+
+    fn link(&self, event: EventId) -> kirk_network::ContingentLink {
+        match self.network.link_of(event) {
+            Some(link) => self.network.contingents()[link],
+            None => unreachable!("only contingent events have children of links followed"),
+        }
+    }
+}

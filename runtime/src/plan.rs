@@ -1,0 +1,64 @@
+//! A proven network, compiled for execution.
+
+use kirk_network::dispatchable::dispatchable;
+use kirk_network::merge::merge;
+use kirk_network::reduce::{Progress, ReduceError, Reduction, reduce, reduce_rest};
+use kirk_network::stnu::TooLarge;
+use kirk_network::{Conflict, Dispatchable, Network, Verdict, check};
+
+/// What an execution needs: the merged network, how its news is used, and the dispatchable form.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    network: Network,
+    pub(crate) reduction: Reduction,
+    pub(crate) net: Dispatchable,
+}
+
+/// Why a network cannot be executed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum NoPlan {
+    /// It is not controllable; the conflict is in terms of the network given.
+    Uncontrollable(Conflict),
+    /// Its numbers are too large to compute with.
+    TooLarge,
+}
+
+impl From<TooLarge> for NoPlan {
+    fn from(_: TooLarge) -> NoPlan {
+        NoPlan::TooLarge
+    }
+}
+
+impl Plan {
+    /// Merges, reduces, proves and compiles a network.
+    pub fn new(network: &Network) -> Result<Plan, NoPlan> {
+        let merged = merge(network).network;
+        match compile(reduce(&merged))? {
+            Some((reduction, net)) => Ok(Plan { network: merged, reduction, net }),
+            None => match check(network)? {
+                Verdict::Uncontrollable(conflict) => Err(NoPlan::Uncontrollable(conflict)),
+                Verdict::Controllable => unreachable!("a controllable network has a dispatchable form"),
+            },
+        }
+    }
+
+    /// The merged network that is executed.
+    pub fn network(&self) -> &Network {
+        &self.network
+    }
+
+    /// The plan for what is left of an execution, `None` if there is none (possible in delayed chains only).
+    pub(crate) fn rest(&self, progress: &Progress) -> Option<(Reduction, Dispatchable)> {
+        compile(reduce_rest(&self.network, progress)).ok().flatten()
+    }
+}
+
+fn compile(
+    reduction: Result<Reduction, ReduceError>,
+) -> Result<Option<(Reduction, Dispatchable)>, TooLarge> {
+    match reduction {
+        Err(ReduceError::TooLarge) => Err(TooLarge),
+        Err(ReduceError::Never(_)) => Ok(None),
+        Ok(reduction) => Ok(dispatchable(&reduction.stnu)?.map(|net| (reduction, net))),
+    }
+}

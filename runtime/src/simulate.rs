@@ -1,0 +1,125 @@
+//! Simulation: the dispatcher, Nature, and a clock that jumps from one thing to the next.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use kirk_network::json::Seconds;
+use kirk_network::{Duration, EventId, Network, Time};
+
+use crate::dispatcher::{Dispatcher, Missed, Strategy};
+use crate::execution::{Execution, FORMAT, Failure, How, Outcome, Row, at};
+use crate::nature::{Impossible, Nature, Temper};
+use crate::plan::Plan;
+
+/// What to simulate.
+#[derive(Clone, Debug, Default)]
+pub struct Simulation {
+    /// How early news is treated.
+    pub strategy: Strategy,
+    /// How Nature chooses.
+    pub nature: Temper,
+    /// The seed of a random Nature.
+    pub seed: u64,
+    /// News that arrives at given times, by event of the plan's network.
+    pub observations: Vec<(EventId, Time)>,
+    /// Also record the events no user wrote.
+    pub internal: bool,
+}
+
+/// Executes a plan against a simulated Nature, in virtual time.
+///
+/// # Errors
+/// An observation that the model says cannot happen.
+pub fn simulate(plan: &Plan, program: &str, simulation: &Simulation) -> Result<Execution, Impossible> {
+    let network = plan.network();
+    let mut nature = Nature::new(network, simulation.nature, simulation.seed, &simulation.observations);
+    let mut dispatcher = Dispatcher::new(plan.clone(), simulation.strategy);
+    let mut truth: Vec<Option<Time>> = vec![None; network.events().len()];
+    let mut news: BinaryHeap<Reverse<(Time, EventId)>> = BinaryHeap::new();
+    let mut now = Time::ZERO;
+    loop {
+        // Acting and hearing take no time, so at one moment they may take turns until nothing more happens.
+        loop {
+            while let Some(&Reverse((time, event))) = news.peek().filter(|Reverse((time, _))| *time <= now) {
+                news.pop();
+                dispatcher.handle_observation(time, event);
+            }
+            dispatcher.handle_timeout(now);
+            while let Some(dispatch) = dispatcher.poll_dispatch() {
+                truth[dispatch.event.index()] = Some(dispatch.time);
+                for deed in nature.begin(dispatch.event, dispatch.time)? {
+                    truth[deed.event.index()] = Some(deed.truth);
+                    news.extend(deed.news.map(|time| Reverse((time, deed.event))));
+                }
+            }
+            if news.peek().is_none_or(|Reverse((time, _))| *time > now) {
+                break;
+            }
+        }
+        let Some(timeout) = dispatcher.poll_timeout() else { break };
+        now = match news.peek() {
+            Some(&Reverse((time, _))) if time < timeout => time,
+            _ => timeout,
+        };
+    }
+    let mut execution = record(&dispatcher, program, now, simulation.internal, &truth);
+    execution.seed = Some(simulation.seed);
+    Ok(execution)
+}
+
+/// The record of an execution that is over at `end`; `truth` where it is known.
+fn record(
+    dispatcher: &Dispatcher,
+    program: &str,
+    end: Time,
+    internal: bool,
+    truth: &[Option<Time>],
+) -> Execution {
+    let network = dispatcher.network();
+    let mut rows: Vec<((i64, u32), Row)> = Vec::new();
+    for event in network.event_ids() {
+        let known = dispatcher.knowledge(event);
+        let contingent = network.link_of(event).is_some();
+        let happened = dispatcher.happened_by(event, end);
+        let (time, how, order) = match known.fixed {
+            Some((time, how)) => (Some(at(time)), how, (time.as_micros(), known.sequence)),
+            None if contingent => (None, How::Never, (happened.map_or(i64::MAX, |(_, high)| high), u32::MAX)),
+            // Not executed: the execution failed before.
+            None => continue,
+        };
+        let interval = |(low, high): (i64, i64)| (at(Time::from_micros(low)), at(Time::from_micros(high)));
+        let row = Row {
+            event: String::new(),
+            time,
+            how,
+            observed: contingent.then(|| known.observed.map(at)),
+            happened: happened.filter(|_| contingent).map(interval),
+            truth: truth[event.index()].map(at),
+        };
+        for name in &network.events()[event.index()].names {
+            if internal || !name.internal {
+                rows.push((order, Row { event: name.text.clone(), ..row.clone() }));
+            }
+        }
+    }
+    rows.sort_by_key(|(order, _)| *order);
+    let failure = dispatcher.missed().map(|missed| missed_window(network, missed));
+    Execution {
+        format: FORMAT.to_string(),
+        program: program.to_string(),
+        outcome: if failure.is_some() { Outcome::Failed } else { Outcome::Completed },
+        failure,
+        makespan: at(end),
+        seed: None,
+        rows: rows.into_iter().map(|(_, row)| row).collect(),
+    }
+}
+
+fn missed_window(network: &Network, missed: Missed) -> Failure {
+    let event = network.label(missed.event).to_string();
+    let detail = format!(
+        "`{event}` could be executed until {} at the latest, but what it waits for came at {}",
+        missed.latest, missed.time
+    );
+    Failure { event, time: Seconds(Duration::from_micros(missed.time.as_micros())), reason: "missed-window".into(), detail }
+}

@@ -125,7 +125,11 @@ impl Analyser<'_> {
         let program = match self.names.program(&call.program, home) {
             Some(program) => program,
             None => {
-                let problem = self.names.unknown_program(&call.program, home);
+                let span = call.program.span;
+                let problem = match self.problems.wants(span.source) {
+                    true => self.names.unknown_program(&call.program, home),
+                    false => Diagnostic::error(Code::UnknownProgram, span, ""),
+                };
                 self.problems.push(problem);
                 return None;
             }

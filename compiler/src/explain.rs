@@ -107,6 +107,10 @@ fn say(share: &Share, network: &Network, origins: &Origins) -> Option<(Span, Str
         }
         Part::RequirementLower(index) => {
             let (requirement, origin) = requirement(index)?;
+            let by_nature = network.link_of(requirement.from).is_some() || network.link_of(requirement.to).is_some();
+            if origin.kind == OriginKind::Order && !by_nature {
+                return None;
+            }
             (place(origin, 0), lower(origin, requirement.lower.finite()?))
         }
         Part::LinkLower(index) => {

@@ -1,10 +1,13 @@
 //! "Did you mean": the known name closest to an unknown one.
 
+/// How many names are looked at: enough for programs people write.
+const MAX_CANDIDATES: usize = 5_000;
+
 /// The candidate with the smallest edit distance to `word`, if it is close enough to be a slip.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let word: Vec<char> = word.chars().take(64).collect();
     let mut best: Option<(usize, &str)> = None;
-    for candidate in candidates {
+    for candidate in candidates.into_iter().take(MAX_CANDIDATES) {
         let limit = best.map_or(word.len().max(candidate.len()) / 3 + 1, |(distance, _)| distance);
         let length = candidate.chars().count();
         if length.abs_diff(word.len()) >= limit + 1 || length > 64 {

@@ -1,6 +1,6 @@
 //! The one place every phase reports to.
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 use crate::code::Code;
 use crate::diagnostic::{Diagnostic, Severity};
@@ -17,11 +17,16 @@ pub struct Problems {
     /// For every source: how many are kept, and how many more there were.
     counts: BTreeMap<u32, (usize, usize)>,
     errors: bool,
+    /// Forms that were not read to their end: what else is wrong with them follows from that.
+    muted: BTreeSet<(u32, u32, u32)>,
 }
 
 impl Problems {
     /// Reports a problem, unless the same code was already reported for the same place.
     pub fn push(&mut self, diagnostic: Diagnostic) {
+        if self.is_muted(diagnostic.span) {
+            return;
+        }
         self.errors |= diagnostic.severity == Severity::Error;
         let counts = self.counts.entry(diagnostic.span.source).or_default();
         if counts.0 >= MAX_PER_SOURCE {
@@ -30,6 +35,21 @@ impl Problems {
             counts.0 += 1;
             self.list.push(diagnostic);
         }
+    }
+
+    /// Drops what is reported from now on about this form, which is damaged; that must have been reported.
+    pub fn mute(&mut self, form: Span) {
+        self.muted.insert((form.source, form.start, form.end));
+    }
+
+    /// True if one more message about this source would be kept: if not, it is not worth thinking about its words.
+    pub fn wants(&self, source: u32) -> bool {
+        self.counts.get(&source).is_none_or(|counts| counts.0 < MAX_PER_SOURCE)
+    }
+
+    fn is_muted(&self, span: Span) -> bool {
+        let before = self.muted.range(..=(span.source, span.start, u32::MAX)).next_back();
+        before.is_some_and(|(source, _, end)| *source == span.source && span.end <= *end)
     }
 
     /// True if anything reported so far was an error.

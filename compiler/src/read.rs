@@ -29,11 +29,11 @@ pub fn read(source: &Source, index: u32, problems: &mut Problems) -> Vec<Form> {
         problems.push(problem);
         return Vec::new();
     }
-    let before = problems.has_errors();
+    let clean = !problems.has_errors();
     let mut reader = Reader::new(&source.text, index, problems);
     reader.run();
     let forms = reader.forms;
-    if forms.is_empty() && problems.has_errors() == before && index == 0 {
+    if forms.is_empty() && clean && !problems.has_errors() {
         let message = if source.text.trim().is_empty() {
             "this source is empty"
         } else {
@@ -272,8 +272,18 @@ impl<'a> Reader<'a> {
             None => problem.help("The text ends while it is still open: is the end of the file missing?"),
         };
         self.problems.push(problem);
-        self.stack.clear();
         self.skipped = 0;
+        // What there is of the form is kept, so that its name is known; other damage in it follows from this one.
+        let end = next.unwrap_or(self.text.len());
+        self.problems.mute(self.span(outermost, end));
+        while let Some(open) = self.stack.pop() {
+            let span = self.span(open.at, end);
+            let form = if open.quote { Form { span, kind: FormKind::Error } } else { Form { span, kind: FormKind::List(open.items) } };
+            match self.stack.last_mut() {
+                Some(top) => top.items.push(form),
+                None => self.forms.push(form),
+            }
+        }
         self.suspect = None;
     }
 
@@ -292,9 +302,18 @@ impl<'a> Reader<'a> {
             let start = form.span.start as usize;
             start == 0 || self.text.as_bytes().get(start - 1) == Some(&b'\n')
         };
+        let mut closed_at = None;
         let spilled = self.forms.iter().rposition(|form| at_line_start(form)).map(|at| at + 1);
         if let Some(from) = spilled {
-            self.forms.truncate(from);
+            // They belong to the definition: given back to it, what they call is in use.
+            let lost = self.forms.split_off(from);
+            if let Some(Form { kind: FormKind::List(items), span }) = self.forms.last_mut() {
+                closed_at = Some(span.end as usize);
+                if let Some(last) = lost.last() {
+                    span.end = last.span.end;
+                }
+                items.extend(lost);
+            }
         }
         let count = self.text[token.start..end].matches(')').count();
         let message = match count {
@@ -303,8 +322,7 @@ impl<'a> Reader<'a> {
         };
         let mut problem = Diagnostic::error(Code::StrayClose, self.span(token.start, end), message)
             .primary(if count == 1 { "one `)` too many" } else { "too many `)`" });
-        if let Some(last) = self.forms.last() {
-            let close = last.span.end as usize;
+        if let Some(close) = closed_at {
             problem = problem.label(self.span(close.saturating_sub(1), close), "the definition before it already ends here");
         }
         self.problems.push(problem);

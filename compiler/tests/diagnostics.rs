@@ -1,0 +1,73 @@
+//! Every file in `tests/rmpl/bad` is a case by existing: its name begins with the code it is about. All codes occur.
+#![allow(clippy::disallowed_methods, reason = "tests read and write files")]
+
+mod common;
+
+use std::collections::BTreeSet;
+
+use kirk_compiler::{Code, Options, code};
+
+#[test]
+fn every_bad_file_is_told_what_is_wrong_with_it() {
+    let mut covered: BTreeSet<String> = BTreeSet::new();
+    for (name, text) in common::sources("tests/rmpl/bad") {
+        let compiled = common::compile(&text);
+        let found: BTreeSet<String> = compiled.diagnostics.iter().map(|d| d.code.to_string()).collect();
+        let said = common::diagnostics(&text, &compiled.diagnostics);
+        assert!(found.contains(&name[..5]), "{name}:\n{said}");
+        let errors = compiled.diagnostics.iter().any(|d| d.severity == kirk_compiler::Severity::Error);
+        assert_eq!(compiled.plan.is_none(), errors, "{name}: there is a plan exactly if there is no error");
+        covered.extend(found);
+        let shown = if text.len() > 4_000 { format!("({} bytes)\n", text.len()) } else { text.replace('\0', "\\0") };
+        let clipped: String = said.lines().take(80).map(|line| format!("{line}\n")).collect();
+        insta::with_settings!({prepend_module_to_snapshot => false, snapshot_path => "snapshots/bad", omit_expression => true}, {
+            insta::assert_snapshot!(name, format!("{shown}\n---\n{clipped}"));
+        });
+    }
+    // These need more than one bad file: a conflict, conditions (in the examples), a source of 4 GiB.
+    let elsewhere = [Code::NotControllable, Code::TooLong].map(|code| code.to_string());
+    let missing: Vec<String> =
+        Code::ALL.iter().map(Code::to_string).filter(|code| !covered.contains(code) && !elsewhere.contains(code)).collect();
+    assert!(missing.is_empty(), "no bad file earns {missing:?}");
+}
+
+#[test]
+fn a_package_is_chosen_or_the_choice_is_explained() {
+    let text = "(defpackage #:astronaut)\n(defpackage #:robot)\n(in-package #:astronaut)\n\
+                (define-control-program main () (declare (primitive)))\n(in-package #:robot)\n\
+                (define-control-program main () (astronaut:main))\n";
+    let with = |package: &str| {
+        let options = Options { package: Some(package.to_string()), ..Options::default() };
+        let compiled = common::compile_with(text, &options);
+        let said = common::diagnostics(text, &compiled.diagnostics);
+        compiled.plan.map(|plan| common::network(&plan)).unwrap_or(said)
+    };
+    insta::assert_snapshot!(["astronaut", "ROBOT", "#:robot", "robbot", "moon"].map(with).join("---\n"));
+}
+
+#[test]
+fn several_sources_are_one_program() {
+    let sources = [
+        kirk_compiler::Source::new("lib.rmpl", "(define-control-program a () (declare (primitive)))\n"),
+        kirk_compiler::Source::new("main.rmpl", "(define-control-program main () (a) (b))\n"),
+    ];
+    let compiled = kirk_compiler::compile(&sources, &Options::default());
+    let places: Vec<(String, u32)> = compiled.diagnostics.iter().map(|d| (d.code.to_string(), d.span.source)).collect();
+    assert_eq!(places, [("K0301".to_string(), 1)]);
+}
+
+#[test]
+fn every_code_has_a_page_and_the_document_is_made_of_them() {
+    for code in Code::ALL {
+        let page = kirk_compiler::explain(&code.to_string().to_lowercase()).unwrap();
+        assert!(page.len() > 200, "the page of {code} says too little:\n{page}");
+    }
+    assert_eq!(kirk_compiler::explain("K9999"), None);
+    assert_eq!(kirk_compiler::explain(""), None);
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/DIAGNOSTICS.md");
+    if std::env::var("INSTA_UPDATE").as_deref() == Ok("always") {
+        std::fs::write(&path, code::pages()).unwrap();
+    }
+    let written = std::fs::read_to_string(&path).unwrap_or_default();
+    assert!(written == code::pages(), "docs/DIAGNOSTICS.md is not what the pages say; run with INSTA_UPDATE=always");
+}

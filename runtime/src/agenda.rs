@@ -13,6 +13,8 @@ use kirk_network::stnu::{Edge, NONE, Rows};
 #[derive(Clone, Debug)]
 pub(crate) struct Agenda {
     edges: Vec<Edge>,
+    /// For each edge: its source is not executed before its target.
+    holds: Vec<bool>,
     outgoing: Rows,
     incoming: Rows,
     /// The link ending at each node, and the links starting there.
@@ -48,7 +50,7 @@ impl Agenda {
     pub(crate) fn new(net: &Dispatchable) -> Agenda {
         let count = net.nodes as usize;
         let mut nodes = vec![NodeState { executed: None, lower: 0, upper: i64::MAX, held_by: 0 }; count];
-        for edge in net.edges.iter().filter(|edge| edge.weight < 0) {
+        for edge in net.edges.iter().filter(|edge| net.holds(edge)) {
             nodes[edge.from as usize].held_by += 1;
         }
         for wait in &net.waits {
@@ -62,6 +64,7 @@ impl Agenda {
             outgoing: Rows::new(net.nodes, net.edges.iter().map(|edge| edge.from)),
             incoming: Rows::new(net.nodes, net.edges.iter().map(|edge| edge.to)),
             edges: net.edges.clone(),
+            holds: net.edges.iter().map(|edge| net.holds(edge)).collect(),
             starting: Rows::new(net.nodes, net.links.iter().map(|link| link.activation)),
             waits_for: Rows::new(net.links.len() as u32, net.waits.iter().map(|wait| wait.link)),
             waits_of: Rows::new(net.nodes, net.waits.iter().map(|wait| wait.waiter)),
@@ -113,8 +116,9 @@ impl Agenda {
             }
         }
         for at in 0..self.incoming.of(node).len() {
-            let Edge { from, weight, .. } = self.edges[self.incoming.of(node)[at] as usize];
-            if weight < 0 {
+            let edge = self.incoming.of(node)[at];
+            let Edge { from, weight, .. } = self.edges[edge as usize];
+            if self.holds[edge as usize] {
                 let state = &mut self.nodes[from as usize];
                 state.lower = state.lower.max(time.saturating_sub(weight));
                 state.held_by -= 1;
@@ -137,6 +141,9 @@ impl Agenda {
                 let wait = &mut self.waits[self.waits_for.of(link)[at] as usize];
                 wait.until = None;
                 let waiter = wait.waiter;
+                // It may go ahead now, not earlier.
+                let lower = &mut self.nodes[waiter as usize].lower;
+                *lower = (*lower).max(time);
                 self.offer(waiter);
             }
         }

@@ -162,8 +162,8 @@ impl Dispatcher {
             Bound::Infinite => i64::MIN,
         };
         let before = self.happened(event);
-        let consistent =
-            before.is_some_and(|(low, high)| low.max(earliest) <= high.min(latest)) && self.is_activated(event);
+        let consistent = before.is_some_and(|(low, high)| low.max(earliest) <= high.min(latest))
+            && self.is_activated(event);
         if !consistent {
             let longest = delay.max.finite().map(|max| max.as_micros());
             return Reception::Impossible {
@@ -180,7 +180,9 @@ impl Dispatcher {
             self.reduction.stnu.links[link as usize].contingent == place.node && place.heard_by == Some(event)
         });
         match window {
-            Some((start, end, _)) if (start..=end).contains(&now) => self.happen(place.node, now, How::Observed),
+            Some((start, end, _)) if (start..=end).contains(&now) => {
+                self.happen(place.node, now, How::Observed)
+            }
             _ => {
                 if self.strategy == Strategy::Optimistic && self.says_more(event, before) {
                     self.replan(event);
@@ -318,9 +320,9 @@ impl Dispatcher {
             .event_ids()
             .map(|event| match (network.link_of(event), self.knowledge[event.index()].fixed) {
                 (None, fixed) => fixed.map(|(time, _)| (time, time)),
-                (Some(_), _) if settled[event.index()] => self
-                    .happened(event)
-                    .map(|(low, high)| (Time::from_micros(low), Time::from_micros(high))),
+                (Some(_), _) if settled[event.index()] => {
+                    self.happened(event).map(|(low, high)| (Time::from_micros(low), Time::from_micros(high)))
+                }
                 _ => None,
             })
             .collect();

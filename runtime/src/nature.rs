@@ -171,8 +171,7 @@ impl<'a> Nature<'a> {
             latest = latest.saturating_add(link.upper.as_micros());
             at = link.from;
         }
-        let latest =
-            delay.max.finite().map(|max| Time::from_micros(latest.saturating_add(max.as_micros())));
+        let latest = delay.max.finite().map(|max| Time::from_micros(latest.saturating_add(max.as_micros())));
         let earliest = Time::from_micros(earliest.saturating_add(delay.min.as_micros()));
         Impossible { event, time, earliest, latest }
     }

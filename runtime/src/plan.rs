@@ -53,9 +53,7 @@ impl Plan {
     }
 }
 
-fn compile(
-    reduction: Result<Reduction, ReduceError>,
-) -> Result<Option<(Reduction, Dispatchable)>, TooLarge> {
+fn compile(reduction: Result<Reduction, ReduceError>) -> Result<Option<(Reduction, Dispatchable)>, TooLarge> {
     match reduction {
         Err(ReduceError::TooLarge) => Err(TooLarge),
         Err(ReduceError::Never(_)) => Ok(None),

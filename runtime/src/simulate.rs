@@ -121,5 +121,10 @@ fn missed_window(network: &Network, missed: Missed) -> Failure {
         "`{event}` could be executed until {} at the latest, but what it waits for came at {}",
         missed.latest, missed.time
     );
-    Failure { event, time: Seconds(Duration::from_micros(missed.time.as_micros())), reason: "missed-window".into(), detail }
+    Failure {
+        event,
+        time: Seconds(Duration::from_micros(missed.time.as_micros())),
+        reason: "missed-window".into(),
+        detail,
+    }
 }

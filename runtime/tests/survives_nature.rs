@@ -1,0 +1,160 @@
+//! Executions of controllable networks keep every requirement in true time, whatever Nature does.
+//!
+//! `KIRK_CASES=100000 cargo test -p kirk-runtime --release --test survives_nature` tries as many networks as one likes.
+
+#[path = "../../network/tests/oracle/mod.rs"]
+mod oracle;
+
+use kirk_network::{Network, Time};
+use kirk_runtime::{Execution, How, Outcome, Plan, Simulation, Strategy, Temper, simulate};
+use oracle::random::{self, Shape};
+
+fn cases(usual: u64) -> u64 {
+    std::env::var("KIRK_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(usual)
+}
+
+fn shapes() -> [Shape; 4] {
+    [Shape::tiny_delayed(), Shape::tiny_delayed().chained(), Shape::medium(), Shape::medium().chained()]
+}
+
+fn run(plan: &Plan, strategy: Strategy, nature: Temper, seed: u64) -> Execution {
+    let simulation = Simulation { strategy, nature, seed, ..Simulation::default() };
+    simulate(plan, "random", &simulation).expect("no observations are prescribed")
+}
+
+/// What is wrong with an execution, by its true times alone.
+fn violation(network: &Network, execution: &Execution) -> Option<String> {
+    if execution.outcome != Outcome::Completed {
+        return Some(format!("{:?}", execution.failure));
+    }
+    let truth = |event| {
+        let name = network.id(event);
+        let row = execution.rows.iter().find(|row| row.event == name);
+        row.and_then(|row| row.truth).map(|time| time.0.as_micros())
+    };
+    if let Some(event) = network.event_ids().find(|&event| truth(event).is_none()) {
+        return Some(format!("{} never happened", network.id(event)));
+    }
+    let length = |from, to| truth(to).unwrap() - truth(from).unwrap();
+    for requirement in network.requirements() {
+        let length = length(requirement.from, requirement.to);
+        let low = requirement.lower.finite().is_some_and(|lower| length < lower.as_micros());
+        let high = requirement.upper.finite().is_some_and(|upper| length > upper.as_micros());
+        if low || high {
+            return Some(format!("{requirement:?} has length {length}"));
+        }
+    }
+    for link in network.contingents() {
+        let length = length(link.from, link.to);
+        assert!(
+            (link.lower.as_micros()..=link.upper.as_micros()).contains(&length),
+            "Nature cheats: {link:?}"
+        );
+    }
+    for row in &execution.rows {
+        let (Some((low, high)), Some(truth)) = (row.happened, row.truth) else { continue };
+        if truth < low || truth > high {
+            return Some(format!("{} happened outside of what is claimed: {row:?}", row.event));
+        }
+    }
+    None
+}
+
+fn natures(seed: u64) -> Vec<(Temper, u64)> {
+    let mut natures = vec![(Temper::Upper, 0), (Temper::Lower, 0)];
+    natures.extend((0..4).map(|n| (Temper::Random, seed * 4 + n)));
+    natures
+}
+
+fn executions_hold(usual: u64, strategy: Strategy) {
+    let mut executed = 0;
+    for seed in 0..cases(usual) {
+        let shape = &shapes()[(seed % 4) as usize];
+        let network = random::network(seed, shape);
+        let broken = |network: &Network| {
+            let plan = Plan::new(network).ok()?;
+            natures(seed).into_iter().find_map(|(nature, nature_seed)| {
+                let execution = run(&plan, strategy, nature, nature_seed);
+                let problem = violation(plan.network(), &execution)?;
+                Some(format!("{nature:?} {nature_seed}: {problem}\n{:#?}", execution.rows))
+            })
+        };
+        executed += u64::from(Plan::new(&network).is_ok());
+        if let Some(problem) = broken(&network) {
+            let small = random::shrunk(&network, |candidate| broken(candidate).is_some());
+            let shrunk = broken(&small).unwrap_or_default();
+            panic!(
+                "seed {seed}:\n{}\n{problem}\nshrinks to\n{}\n{shrunk}",
+                random::describe(&network),
+                random::describe(&small)
+            );
+        }
+    }
+    assert!(executed * 4 > cases(usual), "too few of the networks are controllable: {executed}");
+}
+
+#[test]
+fn buffering_executions_keep_every_requirement() {
+    executions_hold(2000, Strategy::Buffer);
+}
+
+#[test]
+fn optimistic_executions_keep_every_requirement() {
+    executions_hold(2000, Strategy::Optimistic);
+}
+
+#[test]
+fn optimistic_never_finishes_later_than_buffer_on_the_same_durations_and_delays() {
+    for seed in 0..cases(2000) {
+        let shape = &shapes()[(seed % 4) as usize];
+        let network = random::network(seed, shape);
+        let later = |network: &Network| {
+            let plan = Plan::new(network).ok()?;
+            [Temper::Upper, Temper::Lower].into_iter().find_map(|nature| {
+                let buffer = run(&plan, Strategy::Buffer, nature, 0);
+                let optimistic = run(&plan, Strategy::Optimistic, nature, 0);
+                (optimistic.makespan > buffer.makespan).then(|| {
+                    let rows = |e: &Execution| {
+                        e.rows
+                            .iter()
+                            .map(|r| {
+                                format!(
+                                    "  {} {:?} {:?} {:?}\n",
+                                    r.event,
+                                    r.time.map(|t| t.0),
+                                    r.how,
+                                    r.observed
+                                )
+                            })
+                            .collect::<String>()
+                    };
+                    format!("{nature:?}\nbuffer\n{}optimistic\n{}", rows(&buffer), rows(&optimistic))
+                })
+            })
+        };
+        if later(&network).is_some() {
+            let small = random::shrunk(&network, |candidate| later(candidate).is_some());
+            panic!(
+                "seed {seed} shrinks to\n{}\n{}",
+                random::describe(&small),
+                later(&small).unwrap_or_default()
+            );
+        }
+    }
+}
+
+#[test]
+fn every_decision_is_known_to_be_over_in_time_order() {
+    for seed in 0..cases(500) {
+        let network = random::network(seed, &shapes()[(seed % 4) as usize]);
+        let Ok(plan) = Plan::new(&network) else { continue };
+        let execution = run(&plan, Strategy::Optimistic, Temper::Random, seed);
+        let times: Vec<_> = execution.rows.iter().filter_map(|row| row.time).collect();
+        assert!(times.is_sorted(), "seed {seed}: {:#?}", execution.rows);
+        assert!(times.iter().all(|time| *time <= execution.makespan), "seed {seed}");
+        for row in execution.rows.iter().filter(|row| row.how == How::Dispatched) {
+            assert_eq!(row.time, row.truth, "seed {seed}");
+        }
+        assert_eq!(execution.rows[0].time.map(|time| time.0.as_micros()), Some(Time::ZERO.as_micros()));
+    }
+}

@@ -6,7 +6,7 @@
 mod oracle;
 
 use kirk_network::{Network, Time};
-use kirk_runtime::{Execution, How, Outcome, Plan, Simulation, Strategy, Temper, simulate};
+use kirk_runtime::{Execution, How, Outcome, Plan, Simulation, Strategy, Temper, simulate, verify};
 use oracle::random::{self, Shape};
 
 fn cases(usual: u64) -> u64 {
@@ -55,6 +55,19 @@ fn violation(network: &Network, execution: &Execution) -> Option<String> {
         let (Some((low, high)), Some(truth)) = (row.happened, row.truth) else { continue };
         if truth < low || truth > high {
             return Some(format!("{} happened outside of what is claimed: {row:?}", row.event));
+        }
+    }
+    // The verifier finds the same from what was recorded, and from what was heard alone.
+    let mut heard = execution.clone();
+    for row in heard.rows.iter_mut().filter(|row| row.how != How::Dispatched) {
+        row.truth = None;
+    }
+    for recorded in [execution, &heard] {
+        let text = serde_json::to_string(recorded).unwrap();
+        let read: Execution = serde_json::from_str(&text).unwrap();
+        assert_eq!(&read, recorded, "a record reads back equal");
+        if let Some(violation) = verify(network, &read).first() {
+            return Some(format!("verify: {violation:?}"));
         }
     }
     None

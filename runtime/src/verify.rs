@@ -1,0 +1,341 @@
+//! The independent verifier: does a recorded execution keep every requirement of a network?
+//!
+//! It knows nothing of the dispatcher. From the record it takes when executable events were dispatched and when news
+//! arrived; what contingent events did follows from the network. A requirement holds if it holds in every course of
+//! Nature that agrees with the news (or in the one that is recorded as true). Events without a row (those no user
+//! wrote) are ours: it is enough that there are times for them.
+
+use std::collections::{BTreeMap, VecDeque};
+
+use kirk_network::merge::merge;
+use kirk_network::{Bound, EventId, Network};
+
+use crate::execution::{Execution, FORMAT, How, Outcome, Row};
+
+/// Something in the record that contradicts the network. Worded for people.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Violation {
+    /// The event it is about, if it is about one.
+    pub event: Option<String>,
+    /// What is wrong, with the numbers.
+    pub message: String,
+}
+
+/// Checks a recorded execution against a network (as written, not merged). An empty list means it is right.
+pub fn verify(network: &Network, execution: &Execution) -> Vec<Violation> {
+    let network = &merge(network).network;
+    let mut verifier = Verifier {
+        network,
+        makespan: execution.makespan.0.as_micros(),
+        facts: vec![None; network.events().len()],
+        nature: vec![Vec::new(); network.events().len()],
+        violations: Vec::new(),
+    };
+    verifier.read(execution);
+    if verifier.violations.is_empty() {
+        verifier.build_nature();
+    }
+    if verifier.violations.is_empty() {
+        verifier.check_requirements();
+    }
+    verifier.violations
+}
+
+struct Verifier<'a> {
+    network: &'a Network,
+    makespan: i64,
+    /// What the record says of each event.
+    facts: Vec<Option<Fact>>,
+    /// What Nature must respect: from each event, edges (to, most that `to` comes after it).
+    nature: Vec<Vec<(EventId, i64)>>,
+    violations: Vec<Violation>,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+struct Fact {
+    time: Option<i64>,
+    how: How,
+    observed: Option<i64>,
+    truth: Option<i64>,
+}
+
+impl Verifier<'_> {
+    fn say(&mut self, event: Option<&str>, message: String) {
+        self.violations.push(Violation { event: event.map(str::to_string), message });
+    }
+
+    /// Reads the rows: every name once, names of one event in agreement.
+    fn read(&mut self, execution: &Execution) {
+        if execution.format != FORMAT {
+            let format = &execution.format;
+            self.say(None, format!("the format of the execution is `{format}`, expected `{FORMAT}`"));
+        }
+        if execution.outcome == Outcome::Failed {
+            let detail = execution.failure.as_ref().map_or(String::new(), |f| format!(": {}", f.detail));
+            self.say(None, format!("the execution is recorded as failed{detail}"));
+        }
+        let mut rows: BTreeMap<String, &Row> = BTreeMap::new();
+        for row in &execution.rows {
+            if rows.insert(row.event.to_lowercase(), row).is_some() {
+                self.say(Some(&row.event), format!("`{}` has more than one row", row.event));
+            }
+            match self.network.find(&row.event) {
+                None => {
+                    self.say(Some(&row.event), format!("there is no event `{}` in the network", row.event))
+                }
+                Some(event) => self.take(event, row),
+            }
+        }
+        for event in self.network.event_ids() {
+            let names = self.network.events()[event.index()].names.iter();
+            for name in names.filter(|name| !name.internal) {
+                if !rows.contains_key(&name.text.to_lowercase()) {
+                    self.say(Some(&name.text), format!("`{}` has no row", name.text));
+                }
+            }
+        }
+    }
+
+    fn take(&mut self, event: EventId, row: &Row) {
+        let fact = Fact {
+            time: row.time.map(|time| time.0.as_micros()),
+            how: row.how,
+            observed: row.observed.flatten().map(|time| time.0.as_micros()),
+            truth: row.truth.map(|time| time.0.as_micros()),
+        };
+        if self.facts[event.index()].is_some_and(|other| other != fact) {
+            let label = self.network.label(event);
+            self.say(
+                Some(&row.event),
+                format!("`{}` and `{label}` are one event, but their rows differ", row.event),
+            );
+        }
+        self.facts[event.index()] = Some(fact);
+        let name = &row.event;
+        if self.network.link_of(event).is_none() {
+            match fact {
+                Fact { time: Some(time), how: How::Dispatched, observed: None, truth } => {
+                    if truth.is_some_and(|truth| truth != time) {
+                        self.say(Some(name), format!("`{name}` is dispatched, but true at another time"));
+                    }
+                    if time < 0 || event == self.network.origin() && time != 0 {
+                        self.say(Some(name), format!("`{name}` does not respect the origin, which is at 0"));
+                    }
+                }
+                _ => self.say(
+                    Some(name),
+                    format!("`{name}` is ours to execute, but its row is not that of a dispatched event"),
+                ),
+            }
+            return;
+        }
+        let agrees = match (fact.how, fact.time, fact.observed) {
+            (How::Dispatched, ..) => false,
+            (How::Observed, Some(time), Some(observed)) => time == observed,
+            (How::Buffered, Some(time), Some(observed)) => time >= observed,
+            (How::Imagined, Some(time), observed) => observed.is_none_or(|observed| observed >= time),
+            (How::Never, None, observed) => observed.is_none(),
+            _ => false,
+        };
+        if !agrees {
+            let how = fact.how.word();
+            self.say(
+                Some(name),
+                format!("`{name}` is Nature's; time and news of its row do not fit `{how}`"),
+            );
+        }
+    }
+
+    /// The bounds on Nature: links, news, silence; and that they can all be true.
+    fn build_nature(&mut self) {
+        let origin = self.network.origin();
+        let fix = |nature: &mut Vec<Vec<(EventId, i64)>>, event: EventId, low: i64, high: i64| {
+            if high < i64::MAX {
+                nature[origin.index()].push((event, high));
+            }
+            if low > i64::MIN {
+                nature[event.index()].push((origin, -low));
+            }
+        };
+        for event in self.network.event_ids() {
+            let Some(fact) = self.facts[event.index()] else { continue };
+            match self.network.link_of(event) {
+                None => {
+                    let time = fact.time.unwrap_or_default();
+                    fix(&mut self.nature, event, time, time);
+                }
+                Some(link) => {
+                    let link = self.network.contingents()[link];
+                    let (min, max) = (link.delay.min.as_micros(), link.delay.max);
+                    self.nature[link.from.index()].push((event, link.upper.as_micros()));
+                    self.nature[event.index()].push((link.from, -link.lower.as_micros()));
+                    let max = if let Bound::Finite(max) = max { Some(max.as_micros()) } else { None };
+                    // News that has not come by the end will come later, or never.
+                    let heard = fact.observed.unwrap_or(self.makespan);
+                    let low = max.map_or(i64::MIN, |max| heard.saturating_sub(max));
+                    let high = fact.observed.map_or(i64::MAX, |observed| observed - min);
+                    fix(&mut self.nature, event, low, high);
+                    if let Some(truth) = fact.truth {
+                        fix(&mut self.nature, event, truth, truth);
+                    }
+                }
+            }
+        }
+        let Some(from_origin) = self.longest(origin) else {
+            self.say(
+                None,
+                "no course of Nature agrees with the record: some duration or some delay is outside of its bounds"
+                    .to_string(),
+            );
+            for link in self.network.contingents() {
+                self.say_impossible_link(link.from, link.to);
+            }
+            return;
+        };
+        debug_assert_eq!(from_origin[origin.index()], Some(0));
+    }
+
+    /// Names a link whose duration is out of bounds, where both ends are recorded.
+    fn say_impossible_link(&mut self, from: EventId, to: EventId) {
+        let time = |event: EventId| {
+            let fact = self.facts[event.index()]?;
+            if self.network.link_of(event).is_none() { fact.time } else { fact.truth }
+        };
+        let Some(link) = self.network.link_of(to).map(|link| self.network.contingents()[link]) else {
+            return;
+        };
+        if let (Some(start), Some(end)) = (time(from), time(to)) {
+            let length = kirk_network::Duration::from_micros(end - start);
+            if length < link.lower || length > link.upper {
+                let name = self.network.label(to).to_string();
+                let message = format!(
+                    "`{name}` took {length} s, outside of its bounds [{}, {}]",
+                    link.lower, link.upper
+                );
+                self.say(Some(&name), message);
+            }
+        }
+    }
+
+    /// For every event the most it can come after `from` in any course of Nature; `None` if there is no such course.
+    fn longest(&self, from: EventId) -> Option<Vec<Option<i64>>> {
+        let count = self.nature.len();
+        let mut most: Vec<Option<i64>> = vec![None; count];
+        let mut length = vec![0_usize; count];
+        most[from.index()] = Some(0);
+        let mut open = VecDeque::from([from]);
+        let mut queued = vec![false; count];
+        while let Some(event) = open.pop_front() {
+            queued[event.index()] = false;
+            let Some(here) = most[event.index()] else { continue };
+            for &(to, weight) in &self.nature[event.index()] {
+                let candidate = here.saturating_add(weight);
+                if most[to.index()].is_none_or(|known| candidate < known) {
+                    most[to.index()] = Some(candidate);
+                    length[to.index()] = length[event.index()] + 1;
+                    if length[to.index()] > count {
+                        return None;
+                    }
+                    if !std::mem::replace(&mut queued[to.index()], true) {
+                        open.push_back(to);
+                    }
+                }
+            }
+        }
+        Some(most)
+    }
+
+    fn check_requirements(&mut self) {
+        // What must hold between events, worst case: those with a row at once, the others in the end.
+        let mut free: Vec<(EventId, EventId, i64)> = Vec::new();
+        let mut memo: BTreeMap<EventId, Vec<Option<i64>>> = BTreeMap::new();
+        for requirement in self.network.requirements() {
+            let upper = requirement.upper.finite().map(|w| (requirement.from, requirement.to, w.as_micros()));
+            let lower =
+                requirement.lower.finite().map(|w| (requirement.to, requirement.from, -w.as_micros()));
+            for (from, to, weight) in [upper, lower].into_iter().flatten() {
+                if self.facts[from.index()].is_none() || self.facts[to.index()].is_none() {
+                    free.push((from, to, weight));
+                    continue;
+                }
+                if !memo.contains_key(&from) {
+                    let most = self.longest(from).unwrap_or_default();
+                    memo.insert(from, most);
+                }
+                let most = memo[&from].get(to.index()).copied().flatten();
+                if most.is_none_or(|most| most > weight) {
+                    self.violated(from, to, weight, most);
+                }
+            }
+        }
+        self.check_unrecorded(&free);
+    }
+
+    fn violated(&mut self, from: EventId, to: EventId, weight: i64, most: Option<i64>) {
+        let seconds = kirk_network::Duration::from_micros;
+        let (a, b) = (self.network.label(from).to_string(), self.network.label(to).to_string());
+        let found = most.map_or("any time".to_string(), |most| format!("{} s", seconds(most)));
+        let message = if weight < 0 {
+            let found = most.map_or("any time".to_string(), |most| format!("{} s", seconds(-most)));
+            format!(
+                "`{a}` must come at least {} s after `{b}`, but came (or may have come) {found} after it",
+                seconds(-weight)
+            )
+        } else {
+            format!(
+                "`{b}` must come at most {} s after `{a}`, but came (or may have come) {found} after it",
+                seconds(weight)
+            )
+        };
+        self.say(Some(&b), message);
+    }
+
+    /// Are there times for the events without a row? They are ours, so they must suit every course of Nature.
+    fn check_unrecorded(&mut self, requirements: &[(EventId, EventId, i64)]) {
+        let origin = self.network.origin();
+        let latest = self.longest(origin).unwrap_or_default();
+        let interval = |event: EventId| -> Option<(i64, i64)> {
+            let high = latest.get(event.index()).copied().flatten()?;
+            let low = self.longest(event)?.get(origin.index()).copied().flatten().map(|most| -most)?;
+            Some((low, high))
+        };
+        let mut edges: Vec<(usize, usize, i64)> = Vec::new();
+        for event in self.network.event_ids().filter(|event| self.facts[event.index()].is_none()) {
+            edges.push((event.index(), origin.index(), 0));
+        }
+        for &(from, to, weight) in requirements {
+            let mut weight = weight;
+            let mut end = |event: EventId, latest: bool| {
+                if self.facts[event.index()].is_none() {
+                    return Some(event.index());
+                }
+                let (low, high) = interval(event)?;
+                // `to - from <= weight` with a recorded end becomes a bound against the origin.
+                weight = if latest { weight.saturating_sub(high) } else { weight.saturating_add(low) };
+                Some(origin.index())
+            };
+            let (Some(from), Some(to)) = (end(from, false), end(to, true)) else { continue };
+            edges.push((from, to, weight));
+        }
+        let mut most = vec![0_i64; self.network.events().len()];
+        for _ in 0..=most.len() {
+            let mut changed = None;
+            for &(from, to, weight) in &edges {
+                let candidate = most[from].saturating_add(weight);
+                if candidate < most[to] {
+                    most[to] = candidate;
+                    changed = Some(to);
+                }
+            }
+            match changed {
+                None => return,
+                Some(event) if most[event] < -(1_i64 << 61) => break,
+                Some(_) => {}
+            }
+        }
+        self.say(
+            None,
+            "there are no times for the events without a row that keep all requirements".to_string(),
+        );
+    }
+}

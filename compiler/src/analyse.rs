@@ -126,6 +126,9 @@ impl Analyser<'_> {
             Some(program) => program,
             None => {
                 let span = call.program.span;
+                if self.problems.has_lost_definitions() {
+                    return None;
+                }
                 let problem = match self.problems.wants(span.source) {
                     true => self.names.unknown_program(&call.program, home),
                     false => Diagnostic::error(Code::UnknownProgram, span, ""),
@@ -140,10 +143,14 @@ impl Analyser<'_> {
             let count = |n: usize| if n == 1 { "1 argument".to_string() } else { format!("{n} arguments") };
             let name = clip(&target.name.name);
             self.problems.push(
-                Diagnostic::error(Code::WrongArguments, call.span, format!("`{name}` takes {}, not {given}", count(wanted)))
-                    .primary(format!("{} here", count(given)))
-                    .label(target.name.span, "defined here")
-                    .help(format!("Call it as `{}`.", shape(target))),
+                Diagnostic::error(
+                    Code::WrongArguments,
+                    call.span,
+                    format!("`{name}` takes {}, not {given}", count(wanted)),
+                )
+                .primary(format!("{} here", count(given)))
+                .label(target.name.span, "defined here")
+                .help(format!("Call it as `{}`.", shape(target))),
             );
         }
         let arguments = call.arguments.iter().map(|value| self.argument(value)).collect();
@@ -176,7 +183,8 @@ impl Analyser<'_> {
     fn unknown_name(&mut self, ident: &Ident) {
         let parameters = self.definition.parameters.iter().map(|p| p.name.as_str());
         let numbers = self.program.parameters.iter().map(|p| p.name.name.as_str());
-        let help = nearest(&ident.name, parameters.chain(numbers)).map(|near| format!("Did you mean `{near}`?"));
+        let help =
+            nearest(&ident.name, parameters.chain(numbers)).map(|near| format!("Did you mean `{near}`?"));
         self.problems.push(
             Diagnostic::error(Code::UnknownName, ident.span, format!("nothing is called `{}`", clip(&ident.name)))
                 .primary("neither a parameter of this program nor a named number")
@@ -196,17 +204,22 @@ fn entry(program: &ast::Program, names: &Names, options: &Options, problems: &mu
             let text = package.trim_start_matches("#:").trim_start_matches(':').to_lowercase();
             let has_programs = program.programs.iter().any(|p| p.home == text);
             if !defined.contains(&text.as_str()) && !has_programs {
-                let near = nearest(&text, defined.iter().copied()).map(|near| format!("Did you mean `{near}`?"));
+                let near =
+                    nearest(&text, defined.iter().copied()).map(|near| format!("Did you mean `{near}`?"));
                 let known = if defined.is_empty() {
                     "It defines no package at all: leave `-P` out.".to_string()
                 } else {
                     format!("It defines `{}`.", defined.join("`, `"))
                 };
                 problems.push(
-                    Diagnostic::error(Code::UnknownPackage, start, format!("the source defines no package `{}`", clip(&text)))
-                        .primary("looked for it here")
-                        .help(known)
-                        .maybe_help(near),
+                    Diagnostic::error(
+                        Code::UnknownPackage,
+                        start,
+                        format!("the source defines no package `{}`", clip(&text)),
+                    )
+                    .primary("looked for it here")
+                    .help(known)
+                    .maybe_help(near),
                 );
                 return None;
             }
@@ -238,9 +251,13 @@ fn entry(program: &ast::Program, names: &Names, options: &Options, problems: &mu
         names.program(&ident, home)
     };
     let found = homes.iter().find_map(plain);
-    if found.is_none() {
-        let candidates: Vec<&str> =
-            program.programs.iter().filter(|p| homes.contains(&p.home)).map(|p| p.name.name.as_str()).collect();
+    if found.is_none() && !problems.has_lost_definitions() {
+        let candidates: Vec<&str> = program
+            .programs
+            .iter()
+            .filter(|p| homes.contains(&p.home))
+            .map(|p| p.name.name.as_str())
+            .collect();
         let at = program.programs.iter().rfind(|p| homes.contains(&p.home)).map_or(start, |p| p.name.span);
         let help = match (nearest(&wanted, candidates.iter().copied()), candidates.len()) {
             (Some(near), _) => format!("Did you mean `--entry {near}`?"),
@@ -252,9 +269,17 @@ fn entry(program: &ast::Program, names: &Names, options: &Options, problems: &mu
             ),
         };
         problems.push(
-            Diagnostic::error(Code::NoEntry, at, format!("there is no program `{}` to start from", clip(&wanted)))
-                .primary(if candidates.is_empty() { "no program is defined here" } else { "the last program defined" })
-                .help(help),
+            Diagnostic::error(
+                Code::NoEntry,
+                at,
+                format!("there is no program `{}` to start from", clip(&wanted)),
+            )
+            .primary(if candidates.is_empty() {
+                "no program is defined here"
+            } else {
+                "the last program defined"
+            })
+            .help(help),
         );
     }
     found

@@ -33,10 +33,10 @@ pub struct Episode {
     pub delay: Option<Interval>,
     /// What has to hold.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub requires: Option<Condition>,
+    pub requires: Option<Box<Condition>>,
     /// What it brings about.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub effect: Option<Condition>,
+    pub effect: Option<Box<Condition>>,
     /// Its parts, in source order.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub parts: Vec<Episode>,

@@ -37,7 +37,8 @@ pub fn expand(model: &Model, problems: &mut Problems) -> Option<Episode> {
             .help("The times do not depend on them. To start with arguments, call it from a program `main`."),
         );
     }
-    let free = |name: &crate::ast::Ident| Value { kind: ValueKind::Name(None, name.name.clone()), span: name.span };
+    let free =
+        |name: &crate::ast::Ident| Value { kind: ValueKind::Name(None, name.name.clone()), span: name.span };
     let arguments = program.parameters.iter().map(free).collect();
     let mut expander = Expander { model, occurrences: Occurrences::new(model), problems };
     Some(expander.occurrence(entry, arguments, program.name.span))
@@ -62,8 +63,8 @@ impl Expander<'_> {
     fn occurrence(&mut self, index: usize, arguments: Vec<Value>, span: Span) -> Episode {
         let program = &self.model.programs[index];
         let mut episode = blank(self.occurrences.of(&program.name.name), Kind::Program, span);
-        episode.requires = program.requires.as_ref().map(|c| substitute(c, program, &arguments));
-        episode.effect = program.effect.as_ref().map(|c| substitute(c, program, &arguments));
+        episode.requires = program.requires.as_ref().map(|c| Box::new(substitute(c, program, &arguments)));
+        episode.effect = program.effect.as_ref().map(|c| Box::new(substitute(c, program, &arguments)));
         let name = episode.name.clone();
         let mut caller = Caller { name: &name, program, arguments: &arguments, call: span, internal: 0 };
         match &program.work {
@@ -79,8 +80,12 @@ impl Expander<'_> {
         episode.duration = Some(self.interval(timing.bounds, caller, "the lower bound", "the upper bound"));
         episode.contingent = timing.contingent;
         if timing.contingent {
-            let delay =
-                self.interval(timing.delay, caller, "the shortest observation delay", "the longest observation delay");
+            let delay = self.interval(
+                timing.delay,
+                caller,
+                "the shortest observation delay",
+                "the longest observation delay",
+            );
             if delay.lower != Duration::ZERO || delay.upper != Bound::Finite(Duration::ZERO) {
                 episode.delay = Some(delay);
             }
@@ -145,8 +150,12 @@ impl Expander<'_> {
         let value = &caller.arguments[index];
         let (code, message) = match &value.kind {
             ValueKind::Number(number) if *number >= Duration::ZERO => return Bound::Finite(*number),
-            ValueKind::Number(number) => (Code::Negative, format!("`{parameter}` is {number} here, which is negative")),
-            ValueKind::Name(..) => (Code::NotANumber, format!("nothing says what `{parameter}` is, so {what} is unknown")),
+            ValueKind::Number(number) => {
+                (Code::Negative, format!("`{parameter}` is {number} here, which is negative"))
+            }
+            ValueKind::Name(..) => {
+                (Code::NotANumber, format!("nothing says what `{parameter}` is, so {what} is unknown"))
+            }
             _ => (Code::NotANumber, format!("`{parameter}` is not a number here, so it cannot be {what}")),
         };
         self.problems.push(

@@ -11,10 +11,16 @@ use crate::source::Span;
 const PARALLEL: &str = "this `parallel`";
 
 /// Words a conflict. Its indices are those of `network`, which is the network of the plan, not merged.
-pub fn explain_conflict(conflict: &Conflict, network: &Network, origins: &Origins, program: Span) -> Diagnostic {
+pub fn explain_conflict(
+    conflict: &Conflict,
+    network: &Network,
+    origins: &Origins,
+    program: Span,
+) -> Diagnostic {
     let missing = Duration::from_micros(conflict.total.as_micros().saturating_neg());
     let name = network.name();
-    let message = format!("`{name}` cannot be executed in every case: in the worst case {missing} s are missing");
+    let message =
+        format!("`{name}` cannot be executed in every case: in the worst case {missing} s are missing");
     let mut problem = Diagnostic::error(Code::NotControllable, program, message)
         .primary("there is no way to execute this that works whatever happens");
     let mut places: Vec<(Span, Vec<String>)> = Vec::new();
@@ -34,7 +40,8 @@ pub fn explain_conflict(conflict: &Conflict, network: &Network, origins: &Origin
 
 /// The sum, and what to change.
 fn advice(conflict: &Conflict, network: &Network, origins: &Origins) -> String {
-    let mut shares: Vec<&Share> = conflict.members.iter().filter(|share| share.amount != Duration::ZERO).collect();
+    let mut shares: Vec<&Share> =
+        conflict.members.iter().filter(|share| share.amount != Duration::ZERO).collect();
     shares.sort_by_key(|share| share.amount < Duration::ZERO);
     let mut sum = String::new();
     for share in &shares {
@@ -57,8 +64,10 @@ fn advice(conflict: &Conflict, network: &Network, origins: &Origins) -> String {
         }
         _ => false,
     });
-    let bounded = has(&|part| matches!(part, Part::RequirementUpper(index)
-        if origins.requirements.get(index).is_some_and(|origin| origin.kind != OriginKind::Join)));
+    let bounded = has(&|part| {
+        matches!(part, Part::RequirementUpper(index)
+        if origins.requirements.get(index).is_some_and(|origin| origin.kind != OriginKind::Join))
+    });
     let mut advice = Vec::new();
     if bounded {
         advice.push("a longer upper bound");
@@ -98,8 +107,10 @@ fn say(share: &Share, network: &Network, origins: &Origins) -> Option<(Span, Str
         _ => String::new(),
     };
     let times = if share.times > 1 { format!(" ({} times)", share.times) } else { String::new() };
-    let requirement = |index: usize| Some((network.requirements().get(index)?, origins.requirements.get(index)?));
-    let contingent = |index: usize| Some((network.contingents().get(index)?, origins.contingents.get(index)?));
+    let requirement =
+        |index: usize| Some((network.requirements().get(index)?, origins.requirements.get(index)?));
+    let contingent =
+        |index: usize| Some((network.contingents().get(index)?, origins.contingents.get(index)?));
     let (span, text) = match share.part {
         Part::RequirementUpper(index) => {
             let (requirement, origin) = requirement(index)?;
@@ -107,7 +118,8 @@ fn say(share: &Share, network: &Network, origins: &Origins) -> Option<(Span, Str
         }
         Part::RequirementLower(index) => {
             let (requirement, origin) = requirement(index)?;
-            let by_nature = network.link_of(requirement.from).is_some() || network.link_of(requirement.to).is_some();
+            let by_nature =
+                network.link_of(requirement.from).is_some() || network.link_of(requirement.to).is_some();
             if origin.kind == OriginKind::Order && !by_nature {
                 return None;
             }
@@ -123,7 +135,10 @@ fn say(share: &Share, network: &Network, origins: &Origins) -> Option<(Span, Str
         }
         Part::DelayMin(index) => {
             let (link, origin) = contingent(index)?;
-            (origin.places[2], format!("the news of the end of {} may be only {} s late", origin.subject, link.delay.min))
+            (
+                origin.places[2],
+                format!("the news of the end of {} may be only {} s late", origin.subject, link.delay.min),
+            )
         }
         Part::DelayMax(index) => {
             let (link, origin) = contingent(index)?;
@@ -136,7 +151,8 @@ fn say(share: &Share, network: &Network, origins: &Origins) -> Option<(Span, Str
         // What merging made one event is worth a word only where Nature has a say in both.
         Part::Join(index) => {
             let (requirement, origin) = requirement(index)?;
-            let by_nature = network.link_of(requirement.from).is_some() || network.link_of(requirement.to).is_some();
+            let by_nature =
+                network.link_of(requirement.from).is_some() || network.link_of(requirement.to).is_some();
             if !by_nature || origin.subject != PARALLEL {
                 return None;
             }
@@ -157,7 +173,9 @@ fn place(origin: &Origin, which: usize) -> Span {
 fn upper(origin: &Origin, bound: Duration) -> String {
     match origin.kind {
         OriginKind::Constraint => format!("at most {bound} s from start to end of this"),
-        OriginKind::Duration | OriginKind::Contingent => format!("{} takes at most {bound} s", origin.subject),
+        OriginKind::Duration | OriginKind::Contingent => {
+            format!("{} takes at most {bound} s", origin.subject)
+        }
         OriginKind::Join | OriginKind::Order => origin.text.clone(),
     }
 }
@@ -165,7 +183,9 @@ fn upper(origin: &Origin, bound: Duration) -> String {
 fn lower(origin: &Origin, bound: Duration) -> String {
     match origin.kind {
         OriginKind::Constraint => format!("at least {bound} s from start to end of this"),
-        OriginKind::Duration | OriginKind::Contingent => format!("{} takes at least {bound} s", origin.subject),
+        OriginKind::Duration | OriginKind::Contingent => {
+            format!("{} takes at least {bound} s", origin.subject)
+        }
         OriginKind::Join | OriginKind::Order => origin.text.clone(),
     }
 }

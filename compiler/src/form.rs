@@ -165,5 +165,9 @@ fn write_into(form: &Form, text: &mut String) {
 
 /// A word short enough for a message.
 pub fn clip(word: &str) -> String {
-    if word.chars().count() <= 60 { word.to_string() } else { word.chars().take(57).chain("...".chars()).collect() }
+    if word.chars().count() <= 60 {
+        word.to_string()
+    } else {
+        word.chars().take(57).chain("...".chars()).collect()
+    }
 }

@@ -57,8 +57,12 @@ pub enum OriginKind {
 
 /// Builds the network. `None` only if the tree is not what `expand` makes.
 pub fn lower(root: &Episode) -> Option<Plan> {
-    let mut lowering =
-        Lowering { events: Vec::new(), requirements: Vec::new(), contingents: Vec::new(), origins: Origins::default() };
+    let mut lowering = Lowering {
+        events: Vec::new(),
+        requirements: Vec::new(),
+        contingents: Vec::new(),
+        origins: Origins::default(),
+    };
     lowering.episode(root);
     let Lowering { events, requirements, contingents, origins } = lowering;
     let network = Network::new(root.name.clone(), EventId(0), events, requirements, contingents).ok()?;
@@ -133,7 +137,13 @@ impl Lowering {
             }
         }
         if episode.parts.is_empty() && episode.kind != Kind::Primitive {
-            self.link(ends.0, ends.1, OriginKind::Join, episode, format!("{subject} is empty and takes no time"));
+            self.link(
+                ends.0,
+                ends.1,
+                OriginKind::Join,
+                episode,
+                format!("{subject} is empty and takes no time"),
+            );
         }
         ends
     }
@@ -163,7 +173,12 @@ impl Lowering {
                     Kind::Primitive => (OriginKind::Duration, format!("{subject} takes {takes}")),
                     _ => (OriginKind::Constraint, format!("this takes {takes} from start to end")),
                 };
-                self.requirements.push(Requirement { from, to, lower: Bound::Finite(interval.lower), upper: bound });
+                self.requirements.push(Requirement {
+                    from,
+                    to,
+                    lower: Bound::Finite(interval.lower),
+                    upper: bound,
+                });
                 self.origins.requirements.push(Origin { span: interval.span, text, kind, subject, places });
                 return;
             }
@@ -177,7 +192,13 @@ impl Lowering {
             text.push_str(&format!(", and the news of its end comes {} later", range(late)));
         }
         self.contingents.push(ContingentLink { from, to, lower: interval.lower, upper, delay });
-        self.origins.contingents.push(Origin { span: interval.span, text, kind: OriginKind::Contingent, subject, places });
+        self.origins.contingents.push(Origin {
+            span: interval.span,
+            text,
+            kind: OriginKind::Contingent,
+            subject,
+            places,
+        });
     }
 }
 

@@ -3,22 +3,35 @@
 /// How many names are looked at: enough for programs people write.
 const MAX_CANDIDATES: usize = 5_000;
 
-/// The candidate with the smallest edit distance to `word`, if it is close enough to be a slip.
+/// The candidate with the smallest edit distance to `word`, if it is close enough to be a slip; else one that begins
+/// with it.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let start = word;
+    let mut longer: Option<&str> = None;
     let word: Vec<char> = word.chars().take(64).collect();
     let mut best: Option<(usize, &str)> = None;
     for candidate in candidates.into_iter().take(MAX_CANDIDATES) {
+        if start.len() >= 3
+            && longer.is_none()
+            && candidate.len() > start.len()
+            && candidate.starts_with(start)
+        {
+            longer = Some(candidate);
+        }
         let limit = best.map_or(word.len().max(candidate.len()) / 3 + 1, |(distance, _)| distance);
         let length = candidate.chars().count();
         if length.abs_diff(word.len()) >= limit + 1 || length > 64 {
             continue;
         }
         let distance = distance(&word, &candidate.chars().collect::<Vec<_>>());
-        if best.is_none_or(|(least, _)| distance < least) && distance <= limit && distance < word.len().min(length) {
+        if best.is_none_or(|(least, _)| distance < least)
+            && distance <= limit
+            && distance < word.len().min(length)
+        {
             best = Some((distance, candidate));
         }
     }
-    best.map(|(_, candidate)| candidate)
+    best.map(|(_, candidate)| candidate).or(longer)
 }
 
 /// `Did you mean `x`?`, if something is near.
@@ -57,6 +70,7 @@ mod tests {
         assert_eq!(nearest("with-temporal-constrain", known), Some("with-temporal-constraint"));
         assert_eq!(nearest("shower", known), None);
         assert_eq!(nearest("x", ["a", "b"]), None);
+        assert_eq!(nearest("par", known), Some("parallel"));
         assert_eq!(nearest("", known), None);
     }
 }

@@ -31,6 +31,15 @@ pub fn parse(forms: &[Form], program: &mut Program, problems: &mut Problems) {
             }
             continue;
         };
+        let mut word = word;
+        if !DEFINITIONS.contains(&word) {
+            unknown_top_level(form, problems);
+            // A slip in the operator says enough to go on with what was meant.
+            match nearest(word, DEFINITIONS).filter(|_| !rest.is_empty()) {
+                Some(meant) => word = meant,
+                None => continue,
+            }
+        }
         match word {
             "define-control-program" => program.programs.extend(control_program(form, rest, &home, problems)),
             "defclass" => program.classes.extend(class::class(form, rest, &home, problems)),
@@ -52,31 +61,43 @@ pub fn parse(forms: &[Form], program: &mut Program, problems: &mut Problems) {
                             )
                             .primary("not defined above")
                             .maybe_help(Some(
-                                nearest(&home, known.iter().copied().filter(|name| *name != DEFAULT_PACKAGE)).map_or_else(
-                                    || format!("Put `(defpackage #:{})` before it.", clip(&home)),
-                                    |name| format!("Did you mean `{name}`?"),
-                                ),
+                                nearest(&home, known.iter().copied().filter(|name| *name != DEFAULT_PACKAGE))
+                                    .map_or_else(
+                                        || format!("Put `(defpackage #:{})` before it.", clip(&home)),
+                                        |name| format!("Did you mean `{name}`?"),
+                                    ),
                             )),
                         );
                     }
                 }
-                _ => problems.push(expected(form, "`in-package` needs one package", "Write `(in-package #:name)`.")),
+                _ => problems.push(expected(
+                    form,
+                    "`in-package` needs one package",
+                    "Write `(in-package #:name)`.",
+                )),
             },
-            _ => unknown_top_level(form, problems),
+            _ => {}
         }
     }
 }
 
-fn control_program(form: &Form, rest: &[Form], home: &str, problems: &mut Problems) -> Option<ControlProgram> {
+fn control_program(
+    form: &Form,
+    rest: &[Form],
+    home: &str,
+    problems: &mut Problems,
+) -> Option<ControlProgram> {
     const SHAPE: &str = "A program is `(define-control-program name (parameter...) (declare ...) body...)`.";
     let Some((name, rest)) = rest.split_first() else {
         problems.push(expected(form, "this program has no name", SHAPE));
+        problems.lose_definitions();
         return None;
     };
     let Some(name) = ident(name) else {
         if !name.is_error() {
             problems.push(unexpected(name, "the name of the program", SHAPE));
         }
+        problems.lose_definitions();
         return None;
     };
     let mut program = ControlProgram {
@@ -111,7 +132,9 @@ fn control_program(form: &Form, rest: &[Form], home: &str, problems: &mut Proble
     };
     for (index, item) in rest.iter().enumerate() {
         match &item.kind {
-            FormKind::String(text) if program.documentation.is_none() && program.body.is_empty() && index < 2 => {
+            FormKind::String(text)
+                if program.documentation.is_none() && program.body.is_empty() && index < 2 =>
+            {
                 program.documentation = Some(text.clone());
             }
             FormKind::List(_) if item.call().is_some_and(|(word, _)| word == "declare") => {
@@ -132,7 +155,9 @@ fn is_body(rest: &[Form], items: &[Form]) -> bool {
     let word = items.first().and_then(Form::word);
     match word {
         Some("declare") => true,
-        Some(word) => rest.is_empty() && (OPERATORS.contains(&word) || items.iter().any(|item| item.list().is_some())),
+        Some(word) => {
+            rest.is_empty() && (OPERATORS.contains(&word) || items.iter().any(|item| item.list().is_some()))
+        }
         None => false,
     }
 }
@@ -142,9 +167,13 @@ fn parameters(items: &[Form], problems: &mut Problems) -> Vec<Ident> {
     for item in items {
         match ident(item) {
             Some(name) if name.name.starts_with('&') => problems.push(
-                Diagnostic::error(Code::WrongShape, item.span, format!("`{}` is not understood here", clip(&name.name)))
-                    .primary("a parameter was expected")
-                    .help("Every parameter of a control program is given by place; there are no optional ones."),
+                Diagnostic::error(
+                    Code::WrongShape,
+                    item.span,
+                    format!("`{}` is not understood here", clip(&name.name)),
+                )
+                .primary("a parameter was expected")
+                .help("Every parameter of a control program is given by place; there are no optional ones."),
             ),
             Some(name) => {
                 if let Some(first) = names.iter().find(|known| known.name == name.name) {
@@ -158,7 +187,11 @@ fn parameters(items: &[Form], problems: &mut Problems) -> Vec<Ident> {
                 names.push(name);
             }
             None if item.is_error() => {}
-            None => problems.push(unexpected(item, "the name of a parameter", "Parameters are names: `(glider to)`.")),
+            None => problems.push(unexpected(
+                item,
+                "the name of a parameter",
+                "Parameters are names: `(glider to)`.",
+            )),
         }
     }
     names
@@ -168,9 +201,11 @@ fn named_number(form: &Form, rest: &[Form], home: &str, problems: &mut Problems)
     const SHAPE: &str = "A named number is `(defparameter *name* 15)`.";
     match rest {
         [name, value] | [name, value, Form { kind: FormKind::String(_), .. }] => match ident(name) {
-            Some(name) => {
-                Some(NamedNumber { home: home.to_string(), name, value: amount::amount(value, "this number", problems) })
-            }
+            Some(name) => Some(NamedNumber {
+                home: home.to_string(),
+                name,
+                value: amount::amount(value, "this value", problems),
+            }),
             None => {
                 problems.push(unexpected(name, "a name", SHAPE));
                 None
@@ -210,13 +245,25 @@ fn package(form: &Form, rest: &[Form], problems: &mut Problems) -> Option<Packag
             Some("use") => package.uses.extend(values.iter().filter_map(designated)),
             Some("import-from") => {
                 let from = values.first().and_then(Form::designator);
-                package.imports.extend(values.iter().skip(1).filter_map(designated).map(|name| Ident { package: from.clone(), ..name }));
+                package.imports.extend(
+                    values
+                        .iter()
+                        .skip(1)
+                        .filter_map(designated)
+                        .map(|name| Ident { package: from.clone(), ..name }),
+                );
             }
             Some(word) if OPTIONS.contains(&word) => {}
             Some(word) => problems.push(
-                Diagnostic::error(Code::UnknownKeyword, keyword.span, format!("a package has no option `:{}`", clip(word)))
-                    .primary("not an option of `defpackage`")
-                    .maybe_help(did_you_mean(word, OPTIONS).map(|help| help.replace('`', "`:").replace("`:?", "`?"))),
+                Diagnostic::error(
+                    Code::UnknownKeyword,
+                    keyword.span,
+                    format!("a package has no option `:{}`", clip(word)),
+                )
+                .primary("not an option of `defpackage`")
+                .maybe_help(
+                    did_you_mean(word, OPTIONS).map(|help| help.replace('`', "`:").replace("`:?", "`?")),
+                ),
             ),
             None => problems.push(unexpected(keyword, "a keyword such as `:use`", "Options are lists.")),
         }
@@ -229,12 +276,18 @@ fn unknown_top_level(form: &Form, problems: &mut Problems) {
     let (message, help) = if OPERATORS.contains(&word) {
         (
             format!("`{word}` stands outside of every program"),
-            Some("It belongs into the body of a `define-control-program`: is there a `)` too many before it?".to_string()),
+            Some(
+                "It belongs into the body of a `define-control-program`: is there a `)` too many before it?"
+                    .to_string(),
+            ),
         )
     } else if matches!(word, "duration" | "declare" | "primitive" | "requires" | "effect") {
         (
             format!("`{word}` stands outside of every program"),
-            Some("It belongs into a `(declare ...)` of a program: is there a `)` too many before it?".to_string()),
+            Some(
+                "It belongs into a `(declare ...)` of a program: is there a `)` too many before it?"
+                    .to_string(),
+            ),
         )
     } else if word.is_empty() {
         (format!("{} is not a definition", form.describe()), None)
@@ -276,7 +329,6 @@ fn twice(what: &str, first: Span, again: Span) -> Diagnostic {
         .label(first, "first here")
         .help("Keep one of them.")
 }
-
 
 /// `a`, `b` and `c`.
 fn one_of(words: &[&str]) -> String {

@@ -17,6 +17,7 @@ pub struct Problems {
     /// For every source: how many are kept, and how many more there were.
     counts: BTreeMap<u32, (usize, usize)>,
     errors: bool,
+    lost: bool,
     /// Forms that were not read to their end: what else is wrong with them follows from that.
     muted: BTreeSet<(u32, u32, u32)>,
 }
@@ -52,6 +53,16 @@ impl Problems {
         before.is_some_and(|(source, _, end)| *source == span.source && span.end <= *end)
     }
 
+    /// Says that definitions may have been lost with what could not be read: what is missing is not worth a message then.
+    pub fn lose_definitions(&mut self) {
+        self.lost = true;
+    }
+
+    /// True if definitions may have been lost.
+    pub fn has_lost_definitions(&self) -> bool {
+        self.lost
+    }
+
     /// True if anything reported so far was an error.
     pub fn has_errors(&self) -> bool {
         self.errors
@@ -63,7 +74,8 @@ impl Problems {
         for (source, (_, more)) in self.counts {
             if more > 0 {
                 let at = self.list.partition_point(|d| d.span.source <= source);
-                let span = self.list.get(at.wrapping_sub(1)).map_or(Span { source, start: 0, end: 0 }, |d| d.span);
+                let span =
+                    self.list.get(at.wrapping_sub(1)).map_or(Span { source, start: 0, end: 0 }, |d| d.span);
                 let message = format!("there are {more} more problems in this source");
                 let rest = Diagnostic::error(Code::TooManyProblems, span, message)
                     .primary(format!("kirk shows the first {MAX_PER_SOURCE} it finds"))

@@ -27,6 +27,7 @@ pub fn read(source: &Source, index: u32, problems: &mut Problems) -> Vec<Form> {
     }
     if let Some(problem) = foreign_text(&source.text, index) {
         problems.push(problem);
+        problems.lose_definitions();
         return Vec::new();
     }
     let clean = !problems.has_errors();
@@ -34,6 +35,7 @@ pub fn read(source: &Source, index: u32, problems: &mut Problems) -> Vec<Form> {
     reader.run();
     let forms = reader.forms;
     if forms.is_empty() && clean && !problems.has_errors() {
+        problems.lose_definitions();
         let message = if source.text.trim().is_empty() {
             "this source is empty"
         } else {
@@ -52,8 +54,28 @@ pub fn read(source: &Source, index: u32, problems: &mut Problems) -> Vec<Form> {
 struct Open {
     at: usize,
     column: usize,
-    quote: bool,
+    mark: Mark,
     items: Vec<Form>,
+}
+
+/// What opened a form.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Mark {
+    /// `(`.
+    List,
+    /// `[` or `{`, which has been reported.
+    Bracket,
+    /// `'`.
+    Quote,
+    /// A mark that has been reported, and so the form after it is lost.
+    Lost,
+}
+
+impl Mark {
+    /// True if it belongs to the one form that follows.
+    fn is_prefix(self) -> bool {
+        matches!(self, Mark::Quote | Mark::Lost)
+    }
 }
 
 struct Reader<'a> {
@@ -67,6 +89,8 @@ struct Reader<'a> {
     skipped: usize,
     /// The first form whose contents are indented as if it had been closed.
     suspect: Option<usize>,
+    /// True if the nesting limit has been reported for this top-level form.
+    too_deep: bool,
     line_start: usize,
     /// True while nothing but blanks has been seen on this line.
     first_on_line: bool,
@@ -83,6 +107,7 @@ impl<'a> Reader<'a> {
             stack: Vec::new(),
             skipped: 0,
             suspect: None,
+            too_deep: false,
             line_start: 0,
             first_on_line: true,
         }
@@ -99,7 +124,7 @@ impl<'a> Reader<'a> {
                 Kind::Open => self.open(token),
                 Kind::Close => self.close(token),
                 Kind::Quote if self.stack.is_empty() => self.stray(token),
-                Kind::Quote => self.push(token.start, true),
+                Kind::Quote => self.push(token.start, Mark::Quote),
                 Kind::UnclosedComment => {
                     let span = self.span(token.start, token.start + 2);
                     self.problems.push(
@@ -107,9 +132,12 @@ impl<'a> Reader<'a> {
                             .primary("`#|` opens a comment here; `|#` was expected before the end of the text")
                             .help("Everything after it was left out. A comment to the end of one line begins with `;`."),
                     );
+                    self.problems.lose_definitions();
                     break;
                 }
+
                 _ if self.stack.is_empty() => self.stray(token),
+                Kind::Unreadable => self.unreadable(token),
                 _ => self.atom(token),
             }
             self.first_on_line = false;
@@ -132,32 +160,40 @@ impl<'a> Reader<'a> {
         if column == 0 && !self.stack.is_empty() && begins_definition(&self.text[token.start..]) {
             self.unclosed(Some(token.start));
         }
-        self.push(token.start, false);
+        self.push(token.start, Mark::List);
     }
 
-    fn push(&mut self, at: usize, quote: bool) {
+    fn push(&mut self, at: usize, mark: Mark) {
         if self.skipped > 0 || self.stack.len() >= MAX_NESTING {
-            if self.skipped == 0 {
+            if self.skipped == 0 && !std::mem::replace(&mut self.too_deep, true) {
                 let span = self.span(at, at + 1);
                 self.problems.push(
-                    Diagnostic::error(Code::TooDeep, span, format!("forms are nested more than {MAX_NESTING} deep"))
-                        .primary("this is one level too many")
-                        .help("Give the inner part a name of its own with `define-control-program` and call it."),
+                    Diagnostic::error(
+                        Code::TooDeep,
+                        span,
+                        format!("forms are nested more than {MAX_NESTING} deep"),
+                    )
+                    .primary("this is one level too many")
+                    .help("Give the inner part a name of its own with `define-control-program` and call it."),
                 );
                 if let Some(top) = self.stack.last_mut() {
                     top.items.push(Form { span, kind: FormKind::Error });
                 }
             }
-            if !quote {
+            if !mark.is_prefix() {
                 self.skipped += 1;
             }
             return;
         }
         let column = at - self.line_start;
         if self.first_on_line && self.suspect.is_none() {
-            self.suspect = self.stack.last().filter(|top| !top.quote && column <= top.column).map(|top| top.at);
+            self.suspect = self
+                .stack
+                .last()
+                .filter(|top| !top.mark.is_prefix() && column <= top.column)
+                .map(|top| top.at);
         }
-        self.stack.push(Open { at, column, quote, items: Vec::new() });
+        self.stack.push(Open { at, column, mark, items: Vec::new() });
     }
 
     fn close(&mut self, token: Token) {
@@ -166,7 +202,7 @@ impl<'a> Reader<'a> {
             return;
         }
         let mut dangling = None;
-        while let Some(top) = self.stack.pop_if(|top| top.quote) {
+        while let Some(top) = self.stack.pop_if(|top| top.mark.is_prefix()) {
             dangling = Some(top.at);
         }
         if let Some(at) = dangling {
@@ -187,14 +223,17 @@ impl<'a> Reader<'a> {
 
     /// Puts a finished form where it belongs: into the quotes before it, then into the open form or the top level.
     fn finish(&mut self, mut form: Form) {
-        while let Some(quote) = self.stack.pop_if(|top| top.quote) {
+        while let Some(quote) = self.stack.pop_if(|top| top.mark.is_prefix()) {
             let span = self.span(quote.at, form.span.end as usize);
-            form = Form { span, kind: FormKind::Quote(Box::new(form)) };
+            let kind =
+                if quote.mark == Mark::Quote { FormKind::Quote(Box::new(form)) } else { FormKind::Error };
+            form = Form { span, kind };
         }
         match self.stack.last_mut() {
             Some(top) => top.items.push(form),
             None => {
                 self.suspect = None;
+                self.too_deep = false;
                 self.forms.push(form);
             }
         }
@@ -220,14 +259,29 @@ impl<'a> Reader<'a> {
             Kind::Number => FormKind::Number(text.trim_start_matches('+').to_lowercase()),
             Kind::Keyword => FormKind::Keyword(text[1..].to_lowercase()),
             Kind::Uninterned => FormKind::Uninterned(text[2..].to_lowercase()),
-            Kind::Symbol => FormKind::Symbol(symbol(text)),
-            _ => {
-                self.problems.push(unreadable(text, span));
-                FormKind::Error
-            }
+            _ => FormKind::Symbol(symbol(text)),
         };
         if self.skipped == 0 {
             self.finish(Form { span, kind });
+        }
+    }
+
+    /// Reports what has no meaning, and makes the best of it: brackets hold a list together, a mark of Lisp belongs to
+    /// the form after it.
+    fn unreadable(&mut self, token: Token) {
+        let text = &self.text[token.start..token.end];
+        let span = self.span(token.start, token.end);
+        if matches!(text, "]" | "}") && self.stack.last().is_some_and(|top| top.mark == Mark::Bracket) {
+            self.close(token);
+            return;
+        }
+        self.problems.push(unreadable(text, span));
+        match text {
+            "[" | "{" => self.push(token.start, Mark::Bracket),
+            "]" | "}" => {}
+            "`" | "," => self.push(token.start, Mark::Lost),
+            _ if self.skipped == 0 => self.finish(Form { span, kind: FormKind::Error }),
+            _ => {}
         }
     }
 
@@ -250,10 +304,18 @@ impl<'a> Reader<'a> {
     /// Reports the form that is open and gives up all that are.
     fn unclosed(&mut self, next: Option<usize>) {
         let outermost = self.stack.first().map_or(0, |open| open.at);
-        let innermost = self.stack.iter().rev().find(|open| !open.quote).map_or(outermost, |open| open.at);
+        let innermost =
+            self.stack.iter().rev().find(|open| !open.mark.is_prefix()).map_or(outermost, |open| open.at);
         let at = self.suspect.unwrap_or(innermost);
-        let missing = self.stack.iter().filter(|open| !open.quote).count() + self.skipped;
-        let name = self.text[at..].split(|c: char| c.is_whitespace() || c == ')').next().unwrap_or("(");
+        let missing = self.stack.iter().filter(|open| !open.mark.is_prefix()).count() + self.skipped;
+        // A definition is shown with its name.
+        let words = if begins_definition(&self.text[at..]) { 2 } else { 1 };
+        let shown: Vec<&str> = self.text[at..]
+            .split(|c: char| c.is_whitespace() || c == ')')
+            .filter(|word| !word.is_empty())
+            .take(words)
+            .collect();
+        let name = shown.join(" ");
         let what = match missing {
             1 => "a `)` is missing".to_string(),
             _ => format!("{missing} `)` are missing"),
@@ -261,14 +323,17 @@ impl<'a> Reader<'a> {
         let mut problem = Diagnostic::error(
             Code::UnclosedForm,
             self.span(at, at + 1),
-            format!("the form `{}` is never closed", clip(name)),
+            format!("the form `{}` is never closed", clip(&name)),
         )
         .primary(format!("{what} for the form that is open here"));
         if at != outermost {
-            problem = problem.label(self.span(outermost, outermost + 1), "inside the definition that begins here");
+            problem =
+                problem.label(self.span(outermost, outermost + 1), "inside the definition that begins here");
         }
         problem = match next {
-            Some(next) => problem.label(self.span(next, next + 1), "the next definition begins before it is closed"),
+            Some(next) => {
+                problem.label(self.span(next, next + 1), "the next definition begins before it is closed")
+            }
             None => problem.help("The text ends while it is still open: is the end of the file missing?"),
         };
         self.problems.push(problem);
@@ -278,7 +343,11 @@ impl<'a> Reader<'a> {
         self.problems.mute(self.span(outermost, end));
         while let Some(open) = self.stack.pop() {
             let span = self.span(open.at, end);
-            let form = if open.quote { Form { span, kind: FormKind::Error } } else { Form { span, kind: FormKind::List(open.items) } };
+            let form = if open.mark.is_prefix() {
+                Form { span, kind: FormKind::Error }
+            } else {
+                Form { span, kind: FormKind::List(open.items) }
+            };
             match self.stack.last_mut() {
                 Some(top) => top.items.push(form),
                 None => self.forms.push(form),
@@ -323,7 +392,10 @@ impl<'a> Reader<'a> {
         let mut problem = Diagnostic::error(Code::StrayClose, self.span(token.start, end), message)
             .primary(if count == 1 { "one `)` too many" } else { "too many `)`" });
         if let Some(close) = closed_at {
-            problem = problem.label(self.span(close.saturating_sub(1), close), "the definition before it already ends here");
+            problem = problem.label(
+                self.span(close.saturating_sub(1), close),
+                "the definition before it already ends here",
+            );
         }
         self.problems.push(problem);
     }
@@ -336,7 +408,8 @@ impl<'a> Reader<'a> {
             if !continues {
                 break;
             }
-            if let Some(definition) = line.match_indices('(').find(|(at, _)| begins_definition(&line[*at..])) {
+            if let Some(definition) = line.match_indices('(').find(|(at, _)| begins_definition(&line[*at..]))
+            {
                 end += definition.0;
                 break;
             }
@@ -352,7 +425,10 @@ impl<'a> Reader<'a> {
             None => Diagnostic::error(
                 Code::StrayText,
                 span,
-                format!("`{}` stands outside every definition", clip(first.split_whitespace().next().unwrap_or(first))),
+                format!(
+                    "`{}` stands outside every definition",
+                    clip(first.split_whitespace().next().unwrap_or(first))
+                ),
             )
             .primary("a definition in parentheses was expected here")
             .help("A comment begins with `;`. A program is `(define-control-program name () ...)`."),
@@ -401,10 +477,13 @@ fn unreadable(text: &str, span: Span) -> Diagnostic {
         Some('[' | ']' | '{' | '}') => {
             (format!("`{shown}` has no meaning in RMPL"), Some("Forms are enclosed in round parentheses."))
         }
-        Some('|' | '\\') => {
-            (format!("kirk does not read `{shown}` in names"), Some("Names are made of letters, digits and `-+*/<>=.!?%&$_~^@`."))
-        }
+        Some('|' | '\\') => (
+            format!("kirk does not read `{shown}` in names"),
+            Some("Names are made of letters, digits and `-+*/<>=.!?%&$_~^@`."),
+        ),
         _ => (format!("the character `{shown}` has no meaning here"), None),
     };
-    Diagnostic::error(Code::Unreadable, span, message).primary("not RMPL").maybe_help(help.map(str::to_string))
+    Diagnostic::error(Code::Unreadable, span, message)
+        .primary("not RMPL")
+        .maybe_help(help.map(str::to_string))
 }

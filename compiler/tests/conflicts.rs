@@ -8,7 +8,8 @@ use kirk_network::Verdict;
 /// The explanation of a mission that is not controllable.
 fn explanation(text: &str) -> String {
     let compiled = common::compile(text);
-    let plan = compiled.plan.unwrap_or_else(|| panic!("{}", common::diagnostics(text, &compiled.diagnostics)));
+    let plan =
+        compiled.plan.unwrap_or_else(|| panic!("{}", common::diagnostics(text, &compiled.diagnostics)));
     match kirk_network::check(&plan.network).unwrap() {
         Verdict::Uncontrollable(conflict) => {
             let problem = explain_conflict(&conflict, &plan.network, &plan.origins, plan.entry);
@@ -25,7 +26,9 @@ fn example(name: &str) -> String {
 
 #[test]
 fn the_deadline_is_too_tight_for_a_chain_of_activities() {
-    insta::assert_snapshot!(explanation(&example("astronaut").replace(":upper-bound 480", ":upper-bound 60")));
+    insta::assert_snapshot!(explanation(
+        &example("astronaut").replace(":upper-bound 480", ":upper-bound 60")
+    ));
 }
 
 #[test]

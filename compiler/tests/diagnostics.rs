@@ -18,7 +18,8 @@ fn every_bad_file_is_told_what_is_wrong_with_it() {
         let errors = compiled.diagnostics.iter().any(|d| d.severity == kirk_compiler::Severity::Error);
         assert_eq!(compiled.plan.is_none(), errors, "{name}: there is a plan exactly if there is no error");
         covered.extend(found);
-        let shown = if text.len() > 4_000 { format!("({} bytes)\n", text.len()) } else { text.replace('\0', "\\0") };
+        let shown =
+            if text.len() > 4_000 { format!("({} bytes)\n", text.len()) } else { text.replace('\0', "\\0") };
         let clipped: String = said.lines().take(80).map(|line| format!("{line}\n")).collect();
         insta::with_settings!({prepend_module_to_snapshot => false, snapshot_path => "snapshots/bad", omit_expression => true}, {
             insta::assert_snapshot!(name, format!("{shown}\n---\n{clipped}"));
@@ -26,8 +27,11 @@ fn every_bad_file_is_told_what_is_wrong_with_it() {
     }
     // These need more than one bad file: a conflict, conditions (in the examples), a source of 4 GiB.
     let elsewhere = [Code::NotControllable, Code::TooLong].map(|code| code.to_string());
-    let missing: Vec<String> =
-        Code::ALL.iter().map(Code::to_string).filter(|code| !covered.contains(code) && !elsewhere.contains(code)).collect();
+    let missing: Vec<String> = Code::ALL
+        .iter()
+        .map(Code::to_string)
+        .filter(|code| !covered.contains(code) && !elsewhere.contains(code))
+        .collect();
     assert!(missing.is_empty(), "no bad file earns {missing:?}");
 }
 
@@ -52,7 +56,8 @@ fn several_sources_are_one_program() {
         kirk_compiler::Source::new("main.rmpl", "(define-control-program main () (a) (b))\n"),
     ];
     let compiled = kirk_compiler::compile(&sources, &Options::default());
-    let places: Vec<(String, u32)> = compiled.diagnostics.iter().map(|d| (d.code.to_string(), d.span.source)).collect();
+    let places: Vec<(String, u32)> =
+        compiled.diagnostics.iter().map(|d| (d.code.to_string(), d.span.source)).collect();
     assert_eq!(places, [("K0301".to_string(), 1)]);
 }
 
@@ -69,5 +74,8 @@ fn every_code_has_a_page_and_the_document_is_made_of_them() {
         std::fs::write(&path, code::pages()).unwrap();
     }
     let written = std::fs::read_to_string(&path).unwrap_or_default();
-    assert!(written == code::pages(), "docs/DIAGNOSTICS.md is not what the pages say; run with INSTA_UPDATE=always");
+    assert!(
+        written == code::pages(),
+        "docs/DIAGNOSTICS.md is not what the pages say; run with INSTA_UPDATE=always"
+    );
 }

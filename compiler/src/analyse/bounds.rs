@@ -91,7 +91,9 @@ impl Analyser<'_> {
     }
 
     fn amount(&mut self, written: Option<&ast::Amount>, absent: Bound, around: Span) -> Amount {
-        let Some(written) = written else { return Amount { value: AmountValue::Known(absent), span: around } };
+        let Some(written) = written else {
+            return Amount { value: AmountValue::Known(absent), span: around };
+        };
         let value = match &written.kind {
             AmountKind::Number(number) => AmountValue::Known(Bound::Finite(*number)),
             AmountKind::Infinite => AmountValue::Known(Bound::Infinite),
@@ -120,7 +122,13 @@ impl Analyser<'_> {
 }
 
 /// Says that the least is more than the most, if it is.
-pub(crate) fn reversed(least: Duration, most: Duration, bounds: Bounds, low: &str, high: &str) -> Option<Diagnostic> {
+pub(crate) fn reversed(
+    least: Duration,
+    most: Duration,
+    bounds: Bounds,
+    low: &str,
+    high: &str,
+) -> Option<Diagnostic> {
     let code = if low.contains("delay") { Code::DelayReversed } else { Code::LowerAboveUpper };
     (least > most).then(|| {
         Diagnostic::error(code, bounds.lower.span, format!("{low} ({least} s) is above {high} ({most} s)"))

@@ -9,7 +9,8 @@ use crate::typed::{Body, Model, Work};
 
 /// Reports every call that leads back to the program it stands in.
 pub(super) fn check_recursion(model: &Model, problems: &mut Problems) {
-    let calls: Vec<Vec<(usize, Span)>> = (0..model.programs.len()).map(|index| calls_of(model, index)).collect();
+    let calls: Vec<Vec<(usize, Span)>> =
+        (0..model.programs.len()).map(|index| calls_of(model, index)).collect();
     // 0: not seen, 1: on the walk, 2: done.
     let mut state = vec![0_u8; calls.len()];
     for start in 0..calls.len() {
@@ -47,7 +48,8 @@ pub(super) fn check_use(model: &Model, entry: usize, is_main: bool, problems: &m
     if problems.has_errors() {
         return;
     }
-    let calls: Vec<Vec<(usize, Span)>> = (0..model.programs.len()).map(|index| calls_of(model, index)).collect();
+    let calls: Vec<Vec<(usize, Span)>> =
+        (0..model.programs.len()).map(|index| calls_of(model, index)).collect();
     let mut called = vec![false; calls.len()];
     for (target, _) in calls.iter().flatten() {
         called[*target] = true;
@@ -55,9 +57,10 @@ pub(super) fn check_use(model: &Model, entry: usize, is_main: bool, problems: &m
     let mut used = vec![false; calls.len()];
     let mut open = vec![entry];
     if !is_main {
-        open.extend((0..calls.len()).filter(|index| {
-            !called[*index] && matches!(model.programs[*index].work, Work::Body(_))
-        }));
+        open.extend(
+            (0..calls.len())
+                .filter(|index| !called[*index] && matches!(model.programs[*index].work, Work::Body(_))),
+        );
     }
     while let Some(program) = open.pop() {
         if !std::mem::replace(&mut used[program], true) {
@@ -73,7 +76,10 @@ pub(super) fn check_use(model: &Model, entry: usize, is_main: bool, problems: &m
                 format!("the program `{}` is never used", clip(&program.name.name)),
             )
             .primary("defined here")
-            .help(format!("Nothing that `{entry_name}` does leads to it. To start from it, use `--entry {}`.", clip(&program.name.name))),
+            .help(format!(
+                "Nothing that `{entry_name}` does leads to it. To start from it, use `--entry {}`.",
+                clip(&program.name.name)
+            )),
         );
     }
 }
@@ -103,8 +109,15 @@ fn recursion(model: &Model, cycle: &[usize], call: Span) -> Diagnostic {
     }
     path.push(first.clone());
     let mut problem = Diagnostic::error(Code::Recursion, call, format!("the program `{first}` calls itself"))
-        .primary(if cycle.len() == 1 { "it is called from its own body" } else { "this call closes the circle" })
-        .help(format!("{}: a mission that never ends cannot be scheduled. Write repetitions out.", path.join(" -> ")));
+        .primary(if cycle.len() == 1 {
+            "it is called from its own body"
+        } else {
+            "this call closes the circle"
+        })
+        .help(format!(
+            "{}: a mission that never ends cannot be scheduled. Write repetitions out.",
+            path.join(" -> ")
+        ));
     for index in cycle.iter().take(8) {
         problem = problem.label(model.programs[*index].name.span, "on the circle");
     }

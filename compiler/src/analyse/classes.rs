@@ -10,9 +10,30 @@ use crate::problem::Problems;
 
 /// Types of Lisp that kirk does not look into.
 const LISP_TYPES: [&str; 24] = [
-    "t", "integer", "fixnum", "number", "real", "rational", "ratio", "float", "single-float", "double-float", "string",
-    "simple-string", "symbol", "keyword", "boolean", "null", "list", "cons", "sequence", "vector", "array", "function",
-    "character", "atom",
+    "t",
+    "integer",
+    "fixnum",
+    "number",
+    "real",
+    "rational",
+    "ratio",
+    "float",
+    "single-float",
+    "double-float",
+    "string",
+    "simple-string",
+    "symbol",
+    "keyword",
+    "boolean",
+    "null",
+    "list",
+    "cons",
+    "sequence",
+    "vector",
+    "array",
+    "function",
+    "character",
+    "atom",
 ];
 
 /// The classes of a program.
@@ -34,7 +55,9 @@ impl<'a> Classes<'a> {
                             format!("the class `{}` is not defined", clip(&parent.name)),
                         )
                         .primary("extended here")
-                        .maybe_help(nearest(&parent.name, known).map(|near| format!("Did you mean `{near}`?"))),
+                        .maybe_help(
+                            nearest(&parent.name, known).map(|near| format!("Did you mean `{near}`?")),
+                        ),
                     );
                 }
             }
@@ -68,7 +91,10 @@ impl<'a> Classes<'a> {
         while let Some(condition) = open.pop() {
             match condition {
                 Condition::And(parts) | Condition::Or(parts) => open.extend(parts.iter().rev()),
-                Condition::Not(part) | Condition::AtStart(part) | Condition::AtEnd(part) | Condition::OverAll(part) => {
+                Condition::Not(part)
+                | Condition::AtStart(part)
+                | Condition::AtEnd(part)
+                | Condition::OverAll(part) => {
                     open.push(part);
                 }
                 Condition::Holds(slot) => {
@@ -91,12 +117,15 @@ impl<'a> Classes<'a> {
     fn slots(&self, slot: &SlotOf, definition: &ControlProgram, problems: &mut Problems) -> Vec<&'a Slot> {
         let all = || self.classes.iter().flat_map(|class| &class.slots);
         let wanted = &slot.accessor.name;
-        let found: Vec<&Slot> = all().filter(|slot| slot.accessors.iter().any(|name| name.name == *wanted)).collect();
+        let found: Vec<&Slot> =
+            all().filter(|slot| slot.accessors.iter().any(|name| name.name == *wanted)).collect();
         if found.is_empty() {
             let known = all().flat_map(|slot| &slot.accessors).map(|name| name.name.as_str());
             let slot_itself = all().find(|slot| slot.name.name == *wanted);
             let help = match (slot_itself, nearest(wanted, known)) {
-                (Some(_), _) => Some("There is a slot of this name, but it has no `:reader` or `:accessor`.".to_string()),
+                (Some(_), _) => {
+                    Some("There is a slot of this name, but it has no `:reader` or `:accessor`.".to_string())
+                }
                 (None, Some(near)) => Some(format!("Did you mean `{near}`?")),
                 (None, None) => None,
             };
@@ -118,7 +147,14 @@ impl<'a> Classes<'a> {
         found
     }
 
-    fn object(&self, value: &Value, definition: &ControlProgram, program: &Program, names: &Names, problems: &mut Problems) {
+    fn object(
+        &self,
+        value: &Value,
+        definition: &ControlProgram,
+        program: &Program,
+        names: &Names,
+        problems: &mut Problems,
+    ) {
         if let ValueKind::Name(package, name) = &value.kind {
             let ident = Ident { package: package.clone(), name: name.clone(), span: value.span };
             let parameter = program.parameters.is_empty() || names.number(&ident, &definition.home).is_none();
@@ -134,12 +170,20 @@ fn check_slot(class: &Class, slot: &Slot, program: &Program, names: &Names, prob
     while let Some(kind) = open.pop() {
         match kind {
             Type::Or(kinds) => open.extend(kinds.iter().rev()),
-            Type::Named(name) if !LISP_TYPES.contains(&name.name.as_str()) && names.class(name, &class.home).is_none() => {
-                let known = LISP_TYPES.into_iter().chain(program.classes.iter().map(|class| class.name.name.as_str()));
+            Type::Named(name)
+                if !LISP_TYPES.contains(&name.name.as_str()) && names.class(name, &class.home).is_none() =>
+            {
+                let known = LISP_TYPES
+                    .into_iter()
+                    .chain(program.classes.iter().map(|class| class.name.name.as_str()));
                 problems.push(
-                    Diagnostic::warning(Code::UnknownType, name.span, format!("`{}` is not a type kirk knows", clip(&name.name)))
-                        .primary("values of this slot are not checked")
-                        .maybe_help(nearest(&name.name, known).map(|near| format!("Did you mean `{near}`?"))),
+                    Diagnostic::warning(
+                        Code::UnknownType,
+                        name.span,
+                        format!("`{}` is not a type kirk knows", clip(&name.name)),
+                    )
+                    .primary("values of this slot are not checked")
+                    .maybe_help(nearest(&name.name, known).map(|near| format!("Did you mean `{near}`?"))),
                 );
             }
             _ => {}
@@ -159,7 +203,9 @@ fn fits(kind: &Type, value: &Value) -> bool {
         return true;
     }
     match kind {
-        Type::Member(values) => values.iter().any(|other| other.kind == value.kind || !known(other) && same_name(other, value)),
+        Type::Member(values) => {
+            values.iter().any(|other| other.kind == value.kind || !known(other) && same_name(other, value))
+        }
         Type::Or(kinds) => kinds.is_empty() || kinds.iter().any(|kind| fits(kind, value)),
         Type::Named(name) => match name.name.as_str() {
             "boolean" => matches!(value.kind, ValueKind::True | ValueKind::Nil),
@@ -171,7 +217,9 @@ fn fits(kind: &Type, value: &Value) -> bool {
             "number" | "real" | "rational" | "float" | "single-float" | "double-float" => {
                 matches!(value.kind, ValueKind::Number(_))
             }
-            "keyword" | "symbol" => matches!(value.kind, ValueKind::Symbol(_) | ValueKind::True | ValueKind::Nil),
+            "keyword" | "symbol" => {
+                matches!(value.kind, ValueKind::Symbol(_) | ValueKind::True | ValueKind::Nil)
+            }
             _ => true,
         },
         Type::Anything => true,

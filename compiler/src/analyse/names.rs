@@ -106,9 +106,13 @@ impl Names {
         let visible = self.programs.keys().filter(|(package, _)| package == from || self.sees(from, package));
         let near = nearest(&ident.name, visible.map(|(_, name)| name.as_str()).chain(OPERATORS));
         if let Some(near) = near.filter(|near| OPERATORS.contains(near)) {
-            return Diagnostic::error(Code::UnknownOperator, ident.span, format!("there is no operator `{name}`"))
-                .primary("neither an operator nor a program")
-                .help(format!("Did you mean `{near}`?"));
+            return Diagnostic::error(
+                Code::UnknownOperator,
+                ident.span,
+                format!("there is no operator `{name}`"),
+            )
+            .primary("neither an operator nor a program")
+            .help(format!("Did you mean `{near}`?"));
         }
         let elsewhere = self.programs.keys().find(|(_, program)| *program == ident.name);
         let help = match (elsewhere, near) {
@@ -139,16 +143,21 @@ impl Names {
 
     /// True if the package is one of the source; reports those that are neither that nor part of Lisp and RMPL.
     fn check_package(&self, name: &str, span: Span, problems: &mut Problems) -> bool {
-        let builtin = matches!(name, "cl" | "common-lisp" | "rmpl" | DEFAULT_PACKAGE) || name.starts_with("rmpl/");
+        let builtin =
+            matches!(name, "cl" | "common-lisp" | "rmpl" | DEFAULT_PACKAGE) || name.starts_with("rmpl/");
         if self.packages.iter().any(|known| known == name) {
             return true;
         }
         if !builtin {
             let near = nearest(name, self.packages()).map(|near| format!("Did you mean `{near}`?"));
             problems.push(
-                Diagnostic::error(Code::UnknownPackage, span, format!("the package `{}` is not defined", clip(name)))
-                    .primary("not a package of this source")
-                    .maybe_help(near),
+                Diagnostic::error(
+                    Code::UnknownPackage,
+                    span,
+                    format!("the package `{}` is not defined", clip(name)),
+                )
+                .primary("not a package of this source")
+                .maybe_help(near),
             );
         }
         false
@@ -167,7 +176,6 @@ fn fill<'a>(
         let key = (home.as_str(), name.name.as_str());
         match firsts.get(&key) {
             Some(first) => {
-
                 problems.push(defined_twice(what, name, *first));
             }
             None => {
@@ -179,8 +187,12 @@ fn fill<'a>(
 }
 
 fn defined_twice(what: &str, name: &Ident, first: Span) -> Diagnostic {
-    Diagnostic::error(Code::DefinedTwice, name.span, format!("the {what} `{}` is defined twice", clip(&name.name)))
-        .primary("again here")
-        .label(first, "first defined here")
-        .help("Rename one of them, or take one out.")
+    Diagnostic::error(
+        Code::DefinedTwice,
+        name.span,
+        format!("the {what} `{}` is defined twice", clip(&name.name)),
+    )
+    .primary("again here")
+    .label(first, "first defined here")
+    .help("Rename one of them, or take one out.")
 }

@@ -11,7 +11,7 @@ use crate::typed::{Body, Model, Work};
 pub const MAX_EPISODES: u64 = 200_000;
 
 /// How deep episodes may be nested in each other.
-pub const MAX_DEPTH: u64 = 1_200;
+pub const MAX_DEPTH: u64 = 1_000;
 
 /// True if the program stays within the limits; reports it if not.
 pub(super) fn check(model: &Model, entry: usize, problems: &mut Problems) -> bool {
@@ -20,12 +20,17 @@ pub(super) fn check(model: &Model, entry: usize, problems: &mut Problems) -> boo
     let program = &model.programs[entry];
     let name = clip(&program.name.name);
     if size.episodes > MAX_EPISODES {
-        let largest = calls_of(model, entry).into_iter().max_by_key(|(target, _)| sizes[*target].map(|size| size.episodes));
-        let count = if size.episodes == u64::MAX { "more than can be counted".to_string() } else { size.episodes.to_string() };
+        let largest = calls_of(model, entry)
+            .into_iter()
+            .max_by_key(|(target, _)| sizes[*target].map(|size| size.episodes));
+        let count = match size.episodes {
+            u64::MAX => "more episodes than can be counted".to_string(),
+            episodes => format!("{episodes} episodes"),
+        };
         let mut problem = Diagnostic::error(
             Code::TooManyEpisodes,
             program.name.span,
-            format!("`{name}` unfolds to {count} episodes"),
+            format!("`{name}` unfolds to {count}"),
         )
         .primary(format!("at most {MAX_EPISODES} are possible"))
         .help("Every call is an episode of its own, and so is everything it calls in turn.");
@@ -38,9 +43,13 @@ pub(super) fn check(model: &Model, entry: usize, problems: &mut Problems) -> boo
     }
     if size.depth > MAX_DEPTH {
         problems.push(
-            Diagnostic::error(Code::CallsTooDeep, program.name.span, format!("`{name}` unfolds to a depth of {}", size.depth))
-                .primary(format!("at most {MAX_DEPTH} programs and forms can be nested"))
-                .help("Call the programs one after the other instead of each from the one before."),
+            Diagnostic::error(
+                Code::CallsTooDeep,
+                program.name.span,
+                format!("`{name}` unfolds to a depth of {}", size.depth),
+            )
+            .primary(format!("at most {MAX_DEPTH} programs and forms can be nested"))
+            .help("Call the programs one after the other instead of each from the one before."),
         );
         return false;
     }
@@ -60,7 +69,12 @@ fn sizes(model: &Model, entry: usize) -> Vec<Option<Size>> {
     let mut open = vec![entry];
     while let Some(program) = open.last().copied() {
         if !std::mem::replace(&mut seen[program], true) {
-            open.extend(calls_of(model, program).into_iter().map(|(target, _)| target).filter(|target| !seen[*target]));
+            open.extend(
+                calls_of(model, program)
+                    .into_iter()
+                    .map(|(target, _)| target)
+                    .filter(|target| !seen[*target]),
+            );
             continue;
         }
         open.pop();

@@ -10,8 +10,13 @@ use crate::form::{Form, FormKind, clip};
 use crate::nearest::did_you_mean;
 use crate::problem::Problems;
 
-const UNITS: [(&str, i128); 5] =
-    [("microseconds", 1), ("seconds", 1_000_000), ("minutes", 60_000_000), ("hours", 3_600_000_000), ("days", 86_400_000_000)];
+const UNITS: [(&str, i128); 5] = [
+    ("microseconds", 1),
+    ("seconds", 1_000_000),
+    ("minutes", 60_000_000),
+    ("hours", 3_600_000_000),
+    ("days", 86_400_000_000),
+];
 
 /// Reads a duration that is not negative. `what` names it in messages.
 pub(super) fn amount(form: &Form, what: &str, problems: &mut Problems) -> Amount {
@@ -45,7 +50,8 @@ pub(super) fn number(text: &str, unit: i128) -> Result<Duration, ParseDurationEr
                 return Ok(Duration::ZERO);
             }
             let exponent = exponent.strip_prefix('+').unwrap_or(exponent);
-            let exponent: i64 = exponent.parse().unwrap_or(if exponent.starts_with('-') { -1_000 } else { 1_000 });
+            let exponent: i64 =
+                exponent.parse().unwrap_or(if exponent.starts_with('-') { -1_000 } else { 1_000 });
             let power = exponent.saturating_sub(fraction.len() as i64);
             match u32::try_from(power.unsigned_abs()).ok().and_then(|n| 10_i128.checked_pow(n)) {
                 Some(scale) if power < 0 => (digits, scale),
@@ -127,14 +133,18 @@ fn not_a_number(form: &Form, what: &str) -> Diagnostic {
 fn inexact(form: &Form, what: &str, text: &str, error: ParseDurationError) -> Diagnostic {
     let text = clip(text);
     match error {
-        ParseDurationError::TooPrecise => {
-            Diagnostic::error(Code::NotExact, form.span, format!("{what} is not a whole number of microseconds"))
-                .primary(format!("{text} would have to be rounded"))
-                .help("Kirk counts in microseconds and never rounds a bound: write it with at most six decimals.")
+        ParseDurationError::TooPrecise => Diagnostic::error(
+            Code::NotExact,
+            form.span,
+            format!("{what} is not a whole number of microseconds"),
+        )
+        .primary(format!("{text} would have to be rounded"))
+        .help("Kirk counts in microseconds and never rounds a bound: write it with at most six decimals."),
+        ParseDurationError::TooLarge => {
+            Diagnostic::error(Code::TooLarge, form.span, format!("{what} is too large"))
+                .primary("more than 10 billion seconds")
+                .help("For \"no limit\" leave the bound out or write `:infinity`.")
         }
-        ParseDurationError::TooLarge => Diagnostic::error(Code::TooLarge, form.span, format!("{what} is too large"))
-            .primary("more than 10 billion seconds")
-            .help("For \"no limit\" leave the bound out or write `:infinity`."),
         ParseDurationError::NotANumber => not_a_number(form, what),
     }
 }
@@ -144,11 +154,14 @@ fn suffix(name: &str) -> Option<String> {
     let at = name.find(|c: char| !c.is_ascii_digit() && c != '.').filter(|at| *at > 0)?;
     let (digits, unit) = name.split_at(at);
     Some(match unit {
-        "s" | "sec" | "secs" | "second" | "seconds" => format!("A plain number is seconds: write `{digits}`."),
+        "s" | "sec" | "secs" | "second" | "seconds" => {
+            format!("A plain number is seconds: write `{digits}`.")
+        }
         "m" | "min" | "mins" | "minute" | "minutes" => format!("Write `(minutes {digits})`."),
         "h" | "hr" | "hour" | "hours" => format!("Write `(hours {digits})`."),
         "d" | "day" | "days" => format!("Write `(days {digits})`."),
-        _ => "Write seconds (`15`), a unit (`(minutes 5)`), a named number (`*wait*`) or `:infinity`.".to_string(),
+        _ => "Write seconds (`15`), a unit (`(minutes 5)`), a named number (`*wait*`) or `:infinity`."
+            .to_string(),
     })
 }
 

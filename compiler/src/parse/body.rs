@@ -7,7 +7,7 @@ use crate::ast::{Body, Bounds, Call, Group, Value, ValueKind, Within};
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::form::{Form, FormKind, clip};
-use crate::nearest::did_you_mean;
+use crate::nearest::{did_you_mean, nearest};
 use crate::problem::Problems;
 
 /// The operators of bodies.
@@ -22,7 +22,7 @@ pub(super) fn body(form: &Form, problems: &mut Problems) -> Option<Body> {
         not_a_body(form, problems);
         return None;
     };
-    match first.word() {
+    match operator(first, rest, problems) {
         Some(word @ ("sequence" | "parallel")) => {
             let group = group(form, first, rest, problems);
             Some(if word == "sequence" { Body::Sequence(group) } else { Body::Parallel(group) })
@@ -57,13 +57,34 @@ pub(super) fn body(form: &Form, problems: &mut Problems) -> Option<Body> {
             }
             None => {
                 if !first.is_error() {
-                    let help = "A body form begins with an operator or with the name of a program: `(shower)`.";
+                    let help =
+                        "A body form begins with an operator or with the name of a program: `(shower)`.";
                     problems.push(unexpected(first, "an operator or a program", help));
                 }
                 None
             }
         },
     }
+}
+
+/// The word a body form begins with. A call has no lists for arguments: with one, a name close to an operator is a slip.
+fn operator<'a>(first: &'a Form, rest: &[Form], problems: &mut Problems) -> Option<&'a str> {
+    let word = first.word()?;
+    let known = OPERATORS.contains(&word) || NOT_YET.contains(&word) || word == "declare";
+    if known || !rest.iter().any(|form| form.list().is_some()) {
+        return Some(word);
+    }
+    let Some(meant) = nearest(word, OPERATORS) else { return Some(word) };
+    problems.push(
+        Diagnostic::error(
+            Code::UnknownOperator,
+            first.span,
+            format!("there is no operator `{}`", clip(word)),
+        )
+        .primary("neither an operator nor a program")
+        .help(format!("Did you mean `{meant}`?")),
+    );
+    Some(meant)
 }
 
 /// `(simple-temporal :lower-bound l :upper-bound u)`.
@@ -80,7 +101,9 @@ pub(super) fn bounds(form: &Form, word: &str, problems: &mut Problems) -> Option
                 let problem = unexpected(
                     form,
                     &format!("`({word} ...)`"),
-                    &format!("Write `({word} :lower-bound 5 :upper-bound 10)`; either bound may be left out."),
+                    &format!(
+                        "Write `({word} :lower-bound 5 :upper-bound 10)`; either bound may be left out."
+                    ),
                 );
                 problems.push(problem.maybe_help(found.and_then(|(found, _)| did_you_mean(found, [word]))));
             }
@@ -138,9 +161,13 @@ fn within(form: &Form, operator: &Form, rest: &[Form], problems: &mut Problems) 
     let mut limits = Bounds { lower: None, upper: None, span: operator.span };
     let mut rest = rest;
     match rest.split_first() {
-        Some((first, after)) if first.call().is_none_or(|(word, _)| word.starts_with("simple") || after.len() == 1 && !OPERATORS.contains(&word)) => {
+        Some((first, after))
+            if first.call().is_none_or(|(word, _)| {
+                word.starts_with("simple") || after.len() == 1 && !OPERATORS.contains(&word)
+            }) =>
+        {
             match bounds(first, "simple-temporal", problems) {
-                Some(found) if found.lower.is_none() && found.upper.is_none() => {
+                Some(found) if first.list().is_some_and(|items| items.len() == 1) => {
                     problems.push(
                         Diagnostic::warning(Code::NoBounds, first.span, "this constraint allows everything")
                             .primary("neither a lower nor an upper bound")
@@ -154,16 +181,24 @@ fn within(form: &Form, operator: &Form, rest: &[Form], problems: &mut Problems) 
             rest = after;
         }
         _ => problems.push(
-            Diagnostic::error(Code::WrongShape, operator.span, "`with-temporal-constraint` has no constraint")
-                .primary("`(simple-temporal ...)` was expected after this")
-                .help(SHAPE),
+            Diagnostic::error(
+                Code::WrongShape,
+                operator.span,
+                "`with-temporal-constraint` has no constraint",
+            )
+            .primary("`(simple-temporal ...)` was expected after this")
+            .help(SHAPE),
         ),
     }
     if rest.is_empty() {
         problems.push(
-            Diagnostic::error(Code::WrongShape, operator.span, "`with-temporal-constraint` has nothing to constrain")
-                .primary("a body was expected after the constraint")
-                .help(SHAPE),
+            Diagnostic::error(
+                Code::WrongShape,
+                operator.span,
+                "`with-temporal-constraint` has nothing to constrain",
+            )
+            .primary("a body was expected after the constraint")
+            .help(SHAPE),
         );
     }
     let body = rest.iter().filter_map(|form| body(form, problems)).collect();
@@ -179,9 +214,12 @@ fn not_a_body(form: &Form, problems: &mut Problems) {
     if form.is_error() {
         return;
     }
-    let problem = unexpected(form, "a body form", "A body form is a list: `(sequence (:slack t) ...)` or a call.");
+    let problem =
+        unexpected(form, "a body form", "A body form is a list: `(sequence (:slack t) ...)` or a call.");
     problems.push(match form.symbol() {
-        Some(symbol) => problem.help(format!("To call the program `{0}`, write `({0})`.", clip(&symbol.name))),
+        Some(symbol) => {
+            problem.help(format!("To call the program `{0}`, write `({0})`.", clip(&symbol.name)))
+        }
         None => problem,
     });
 }

@@ -36,7 +36,8 @@ pub(super) fn class(form: &Form, rest: &[Form], home: &str, problems: &mut Probl
     }
     for option in options {
         let keyword = option.list().and_then(|items| items.first()).and_then(Form::keyword);
-        if !matches!(keyword, Some("documentation" | "default-initargs" | "metaclass")) && !option.is_error() {
+        if !matches!(keyword, Some("documentation" | "default-initargs" | "metaclass")) && !option.is_error()
+        {
             problems.push(unexpected(option, "an option such as `(:documentation ...)`", SHAPE));
         }
     }
@@ -66,19 +67,28 @@ fn slot(form: &Form, problems: &mut Problems) -> Option<Slot> {
         }
         return None;
     };
-    let mut slot = Slot { name, kind: None, accessors: Vec::new(), initform: None, finalp: false, documentation: None };
+    let mut slot =
+        Slot { name, kind: None, accessors: Vec::new(), initform: None, finalp: false, documentation: None };
     while let Some((keyword, after)) = rest.split_first() {
         let Some(option) = keyword.keyword() else {
             if !keyword.is_error() {
-                problems.push(unexpected(keyword, "a slot option", "Slot options are keywords, each followed by its value."));
+                problems.push(unexpected(
+                    keyword,
+                    "a slot option",
+                    "Slot options are keywords, each followed by its value.",
+                ));
             }
             rest = after;
             continue;
         };
         let Some((setting, after)) = after.split_first() else {
             problems.push(
-                Diagnostic::error(Code::WrongShape, keyword.span, format!("`:{}` has no value", clip(option)))
-                    .primary("a value was expected after this option"),
+                Diagnostic::error(
+                    Code::WrongShape,
+                    keyword.span,
+                    format!("`:{}` has no value", clip(option)),
+                )
+                .primary("a value was expected after this option"),
             );
             break;
         };
@@ -90,16 +100,24 @@ fn slot(form: &Form, problems: &mut Problems) -> Option<Slot> {
             "finalp" => slot.finalp = setting.word() != Some("nil"),
             "documentation" => match &setting.kind {
                 FormKind::String(text) => slot.documentation = Some(text.clone()),
-                _ => problems.push(unexpected(setting, "a string", "Documentation is text in quotation marks.")),
+                _ => problems.push(unexpected(
+                    setting,
+                    "a string",
+                    "Documentation is text in quotation marks.",
+                )),
             },
             _ if SLOT_OPTIONS.contains(&option) => {}
             _ => problems.push(
-                Diagnostic::warning(Code::UnknownSlotOption, keyword.span, format!("a slot has no option `:{}`", clip(option)))
-                    .primary("left out, with its value")
-                    .help(match nearest(option, SLOT_OPTIONS) {
-                        Some(near) => format!("Did you mean `:{near}`?"),
-                        None => format!("The slot options are :{}.", SLOT_OPTIONS.join(", :")),
-                    }),
+                Diagnostic::warning(
+                    Code::UnknownSlotOption,
+                    keyword.span,
+                    format!("a slot has no option `:{}`", clip(option)),
+                )
+                .primary("left out, with its value")
+                .help(match nearest(option, SLOT_OPTIONS) {
+                    Some(near) => format!("Did you mean `:{near}`?"),
+                    None => format!("The slot options are :{}.", SLOT_OPTIONS.join(", :")),
+                }),
             ),
         }
     }

@@ -36,7 +36,14 @@ pub(super) fn condition(form: &Form, problems: &mut Problems) -> Option<Conditio
                 ("at", Some("end")) => Condition::AtEnd(Box::new(part?)),
                 ("over", Some("all")) => Condition::OverAll(Box::new(part?)),
                 _ => {
-                    bad(problems, when, format!("`{word}` needs {}", if word == "at" { "`:start` or `:end`" } else { "`:all`" }));
+                    bad(
+                        problems,
+                        when,
+                        format!(
+                            "`{word}` needs {}",
+                            if word == "at" { "`:start` or `:end`" } else { "`:all`" }
+                        ),
+                    );
                     return None;
                 }
             }

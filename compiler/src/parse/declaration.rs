@@ -27,7 +27,11 @@ pub(super) fn declare(form: &Form, program: &mut ControlProgram, problems: &mut 
         match word {
             "primitive" => {
                 if let Some(extra) = rest.first() {
-                    problems.push(unexpected(extra, "`)`", "`(primitive)` stands alone; the duration is a declaration of its own."));
+                    problems.push(unexpected(
+                        extra,
+                        "`)`",
+                        "`(primitive)` stands alone; the duration is a declaration of its own.",
+                    ));
                 }
                 program.primitive = true;
             }
@@ -61,10 +65,14 @@ pub(super) fn declare(form: &Form, program: &mut ControlProgram, problems: &mut 
                 program.damaged = true;
                 let at = item.list().and_then(|items| items.first()).map_or(item.span, |first| first.span);
                 problems.push(
-                    Diagnostic::error(Code::UnknownDeclaration, at, format!("`{}` is not a declaration kirk knows", clip(word)))
-                        .primary("not understood here")
-                        .help(format!("The declarations are {}.", one_of(&DECLARATIONS)))
-                        .maybe_help(did_you_mean(word, DECLARATIONS)),
+                    Diagnostic::error(
+                        Code::UnknownDeclaration,
+                        at,
+                        format!("`{}` is not a declaration kirk knows", clip(word)),
+                    )
+                    .primary("not understood here")
+                    .help(format!("The declarations are {}.", one_of(&DECLARATIONS)))
+                    .maybe_help(did_you_mean(word, DECLARATIONS)),
                 );
             }
         }
@@ -89,9 +97,13 @@ fn duration(form: &Form, rest: &[Form], problems: &mut Problems) -> Option<Durat
     let [contingent] = options(rest, ["contingent"], "duration", problems);
     if let (Some(misplaced), None) = (misplaced, contingent) {
         problems.push(
-            Diagnostic::error(Code::WrongShape, misplaced.span, "`:contingent` belongs to `duration`, not to `simple`")
-                .primary("a parenthesis too far in")
-                .help("Write `(duration (simple ...) :contingent t)`."),
+            Diagnostic::error(
+                Code::WrongShape,
+                misplaced.span,
+                "`:contingent` belongs to `duration`, not to `simple`",
+            )
+            .primary("a parenthesis too far in")
+            .help("Write `(duration (simple ...) :contingent t)`."),
         );
     }
     let delay = (min.is_some() || max.is_some()).then(|| Bounds {

@@ -11,7 +11,8 @@ pub(crate) const DEFINITIONS: [&str; 6] =
 /// True if the text begins with `(` and the name of a top-level form.
 pub(super) fn begins_definition(text: &str) -> bool {
     let Some(rest) = text.strip_prefix('(') else { return false };
-    let word = rest.as_bytes().iter().take(64).position(|b| b.is_ascii_whitespace() || matches!(b, b'(' | b')'));
+    let word =
+        rest.as_bytes().iter().take(64).position(|b| b.is_ascii_whitespace() || matches!(b, b'(' | b')'));
     let Some(word) = word.and_then(|end| rest.get(..end)) else { return false };
     let name = word.rsplit(':').next().unwrap_or(word);
     DEFINITIONS.iter().any(|known| known.eq_ignore_ascii_case(name))
@@ -51,7 +52,8 @@ pub(super) fn foreign_line(line: &str) -> Option<&'static str> {
     let prompt = |c: char| line.strip_prefix(c).is_some_and(|rest| rest.starts_with(' '));
     Some(if line.starts_with("#!") {
         "a script for another program"
-    } else if prompt('$') || prompt('%') || prompt('>') || is_user_prompt(line) || starts(&["PS C:", "C:\\"]) {
+    } else if prompt('$') || prompt('%') || prompt('>') || is_user_prompt(line) || starts(&["PS C:", "C:\\"])
+    {
         "what was typed at a shell prompt"
     } else if starts(&["kirk run", "kirk check", "kirk compile", "cargo ", "git ", "sudo ", "curl "]) {
         "a command for the shell"
@@ -65,7 +67,8 @@ pub(super) fn foreign_line(line: &str) -> Option<&'static str> {
         "JSON"
     } else if starts(&["(define (domain", "(define (problem"]) {
         "PDDL"
-    } else if starts(&["def ", "import ", "from ", "class "]) && (line.ends_with(':') || !line.contains('(')) {
+    } else if starts(&["def ", "import ", "from ", "class "]) && (line.ends_with(':') || !line.contains('('))
+    {
         "Python"
     } else if starts(&["let ", "const ", "var ", "function ", "export "]) {
         "JavaScript or another language with `let` and `=`"

@@ -51,7 +51,12 @@ pub fn diagnostics(text: &str, diagnostics: &[Diagnostic]) -> String {
         out.push_str(&format!("{} {severity} {}: {}\n", place(d.span.start), d.code, d.message));
         out.push_str(&format!("    `{}` {}\n", shown(d.span), d.primary));
         for label in &d.labels {
-            out.push_str(&format!("    {} `{}` {}\n", place(label.span.start), shown(label.span), label.message));
+            out.push_str(&format!(
+                "    {} `{}` {}\n",
+                place(label.span.start),
+                shown(label.span),
+                label.message
+            ));
         }
         if let Some(help) = &d.help {
             out.push_str(&format!("    = {help}\n"));
@@ -65,8 +70,11 @@ pub fn network(plan: &Plan) -> String {
     let network = &plan.network;
     let mut out = format!("network {}, origin {}\n", network.name(), network.id(network.origin()));
     for event in network.events() {
-        let names: Vec<String> =
-            event.names.iter().map(|n| if n.internal { format!("({})", n.text) } else { n.text.clone() }).collect();
+        let names: Vec<String> = event
+            .names
+            .iter()
+            .map(|n| if n.internal { format!("({})", n.text) } else { n.text.clone() })
+            .collect();
         out.push_str(&format!("  {}\n", names.join(" ")));
     }
     for (r, origin) in network.requirements().iter().zip(&plan.origins.requirements) {

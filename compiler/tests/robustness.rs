@@ -1,0 +1,242 @@
+//! Whatever the text, there is a result: no panic, no exhausted stack, places inside the text, few messages.
+#![allow(clippy::disallowed_methods, reason = "tests measure stacks in threads of their own")]
+
+mod common;
+
+use kirk_compiler::{Compilation, Options, Severity, Source, compile, explain_conflict, to_sexpr};
+use proptest::prelude::*;
+
+/// Compiles and checks what must hold for every text.
+fn result(text: &str) -> Compilation {
+    let compiled = compile(&[Source::new("x", text)], &Options::default());
+    for d in &compiled.diagnostics {
+        for span in d.labels.iter().map(|label| label.span).chain([d.span]) {
+            let (start, end) = (span.start as usize, span.end as usize);
+            assert!(
+                start <= end && end <= text.len(),
+                "{span:?} is not in the text of {} bytes: {d:?}",
+                text.len()
+            );
+            assert!(
+                text.is_char_boundary(start) && text.is_char_boundary(end),
+                "{span:?} cuts a character: {d:?}"
+            );
+        }
+        assert!(!d.message.is_empty() && d.message.len() < 1_000, "{d:?}");
+    }
+    assert!(compiled.diagnostics.len() <= 201);
+    assert_eq!(compiled.plan.is_none(), compiled.diagnostics.iter().any(|d| d.severity == Severity::Error));
+    compiled
+}
+
+/// Does it on a stack of 2 MB, as a thread has.
+fn on_a_small_stack(work: impl FnOnce() + Send + 'static) {
+    std::thread::Builder::new().stack_size(2 << 20).spawn(work).unwrap().join().unwrap();
+}
+
+#[test]
+#[expect(clippy::string_slice, reason = "only at character boundaries")]
+fn a_mission_cut_anywhere_gives_a_result() {
+    for (_, text) in common::sources("examples/rmpl") {
+        for cut in (0..text.len()).filter(|cut| text.is_char_boundary(*cut)) {
+            result(&text[..cut]);
+            if cut % 3 == 0 {
+                result(&text[cut..]);
+            }
+        }
+    }
+}
+
+#[test]
+fn nesting_of_any_depth_gives_a_result() {
+    on_a_small_stack(|| {
+        for unit in ["(", "'", "((", "[", "#|", "(sequence ", "(minutes ", "`(", ")", "\"", "(and "] {
+            for depth in [10, 1_000, 100_000] {
+                result(&unit.repeat(depth));
+                result(&format!(
+                    "(define-control-program main () {}{})",
+                    unit.repeat(depth),
+                    ")".repeat(depth)
+                ));
+                result(&format!("(define-control-program main () (a {}))", unit.repeat(depth)));
+                result(&format!(
+                    "(define-control-program main () (declare (primitive) (requires {})))",
+                    unit.repeat(depth)
+                ));
+            }
+        }
+    });
+}
+
+#[test]
+fn what_may_be_nested_is_compiled_and_written_on_a_small_stack() {
+    on_a_small_stack(|| {
+        for (open, close) in [("(sequence (:slack t) ", ")"), ("(parallel () ", ")")] {
+            let depth = 990;
+            let text = format!(
+                "(define-control-program a () (declare (primitive)))\n(define-control-program main ()\n{}(a){})\n",
+                open.repeat(depth),
+                close.repeat(depth)
+            );
+            let compiled = result(&text);
+            let plan = compiled.plan.expect("a plan");
+            assert_eq!(plan.network.events().len(), 2 * (depth + 2));
+            assert!(to_sexpr(&compiled.ast).unwrap().len() > depth);
+            assert!(to_sexpr(&compiled.episodes).unwrap().len() > depth);
+        }
+        let calls: String =
+            (1..=990).map(|n| format!("(define-control-program p{n} () (p{}))\n", n - 1)).collect();
+        let text = format!(
+            "(define-control-program p0 () (declare (primitive)))\n{calls}(define-control-program main () (p990))"
+        );
+        assert!(to_sexpr(&result(&text).episodes).unwrap().contains("p990"));
+    });
+}
+
+#[test]
+fn long_programs_are_compiled_in_linear_time() {
+    on_a_small_stack(|| {
+        let forms = "    (a)\n".repeat(50_000);
+        let text = format!(
+            "(define-control-program a () (declare (primitive)))\n(define-control-program main ()\n  (sequence ()\n{forms}))"
+        );
+        let compiled = result(&text);
+        let network = &compiled.plan.as_ref().expect("a plan").network;
+        assert_eq!(network.events().len(), 2 * 50_002);
+        assert!(network.find("a#50000:end").is_some());
+        assert!(to_sexpr(&compiled.episodes).unwrap().contains("a#50000"));
+        // Half a million tokens, everything wrong.
+        result(&"(a b) ".repeat(100_000));
+        result(&"x (".repeat(100_000));
+        result(&")(".repeat(100_000));
+        result(&"\"a\n".repeat(100_000));
+        result(&format!("(define-control-program main () {})", "(missing) ".repeat(100_000)));
+        let programs: String =
+            (0..20_000).map(|n| format!("(define-control-program p{n} () (q{n}))\n")).collect();
+        result(&programs);
+    });
+}
+
+#[test]
+fn names_are_unique_whatever_programs_are_called() {
+    let text = "(define-control-program a () (declare (primitive)))
+(define-control-program a#2 () (declare (primitive)))
+(define-control-program main.1 () (declare (primitive)))
+(define-control-program main () (sequence () (a) (a) (a#2) (main.1) (a#2) (a)))";
+    let compiled = result(text);
+    let network = compiled.plan.expect("a plan").network;
+    let names: Vec<&str> =
+        network.event_ids().map(|event| network.id(event)).filter(|id| id.ends_with(":start")).collect();
+    assert_eq!(
+        names,
+        [
+            "main:start",
+            "main.2:start",
+            "a:start",
+            "a#3:start",
+            "a#2:start",
+            "main.1:start",
+            "a#2#2:start",
+            "a#4:start"
+        ]
+    );
+}
+
+#[test]
+fn lisp_spellings_mean_the_same() {
+    let plain = "(define-control-program a () (declare (primitive) (duration (simple :lower-bound 90 :upper-bound 120))))
+(define-control-program main () (sequence (:slack nil) (a)))";
+    let odd = "\u{feff}#| one #| two |# |# (RMPL/LANG:Define-Control-Program A nil ; comment\r
+\t(DECLARE (Primitive) (Duration (SIMPLE :Lower-Bound 9d1 :UPPER-BOUND (minute 2.)) :contingent nil)))\r
+(rmpl/lang:define-control-program MAIN () (cl-user::a))";
+    let events = |text| {
+        let plan = result(text).plan.expect("a plan");
+        plan.network
+            .requirements()
+            .iter()
+            .map(|r| (r.lower, r.upper))
+            .filter(|(l, _)| l.finite().is_some_and(|l| l.as_micros() > 0))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(events(plain), events(odd));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    #[test]
+    fn any_text_gives_a_result(text in ".{0,200}") {
+        result(&text);
+    }
+
+    #[test]
+    fn any_bytes_give_a_result(bytes in proptest::collection::vec(any::<u8>(), 0..200)) {
+        result(&String::from_utf8_lossy(&bytes));
+    }
+
+    #[test]
+    fn any_words_of_the_language_give_a_result(words in proptest::collection::vec(0..WORDS.len(), 0..80)) {
+        let text: String = words.iter().map(|word| WORDS[*word]).collect::<Vec<_>>().join(" ");
+        let compiled = result(&text);
+        result(&format!("(define-control-program main () {text})"));
+        if let Some(plan) = compiled.plan
+            && let Ok(kirk_network::Verdict::Uncontrollable(conflict)) = kirk_network::check(&plan.network)
+        {
+            explain_conflict(&conflict, &plan.network, &plan.origins, plan.entry);
+        }
+    }
+
+    #[test]
+    fn a_mission_with_one_slip_gives_a_result(which in 0..12_usize, at in any::<prop::sample::Index>(), c in "[()\"'#|;:a5 \n\\[]?") {
+        let sources = common::sources("examples/rmpl");
+        let text = &sources[which % sources.len()].1;
+        let at = at.index(text.len());
+        prop_assume!(text.is_char_boundary(at) && text.is_char_boundary(at + 1));
+        let (before, after) = text.split_at(at);
+        let after = after.get(1..).unwrap_or("");
+        result(&format!("{before}{c}{after}"));
+    }
+}
+
+const WORDS: [&str; 40] = [
+    "(",
+    "(",
+    "(",
+    ")",
+    ")",
+    ")",
+    "\n(define-control-program",
+    "a",
+    "main",
+    "()",
+    "(declare",
+    "(primitive)",
+    "(duration",
+    "(simple",
+    ":lower-bound",
+    ":upper-bound",
+    "5",
+    "1/2",
+    "-3",
+    ":infinity",
+    ":contingent t",
+    ":max-observation-delay",
+    "(sequence (:slack t)",
+    "(parallel",
+    "(with-temporal-constraint",
+    "(simple-temporal",
+    "(minutes 5)",
+    "'",
+    "\"text\"",
+    "(defclass",
+    "(defpackage #:p)",
+    "(in-package #:p)",
+    "(requires",
+    "(and",
+    "(= (x a) nil)",
+    "nil",
+    "t",
+    "#|",
+    "|#",
+    ";",
+];

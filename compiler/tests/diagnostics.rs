@@ -79,3 +79,31 @@ fn every_code_has_a_page_and_the_document_is_made_of_them() {
         "docs/DIAGNOSTICS.md is not what the pages say; run with INSTA_UPDATE=always"
     );
 }
+
+#[test]
+fn the_examples_of_a_page_earn_the_code_and_do_not() {
+    let block = |page: &str, title: &str| -> Option<String> {
+        let (_, after) = page.split_once(&format!("\n{title}:\n\n"))?;
+        let lines = after.lines().take_while(|line| line.is_empty() || line.starts_with("    "));
+        Some(lines.map(|line| format!("{}\n", line.trim_start())).collect())
+    };
+    let mut tried = 0;
+    for code in Code::ALL {
+        let page = kirk_compiler::explain(&code.to_string()).unwrap();
+        for (title, expected) in [("Wrong", true), ("Right", false)] {
+            let Some(example) = block(&page, title) else { continue };
+            let compiled = common::compile(&example);
+            let said = common::diagnostics(&example, &compiled.diagnostics);
+            let found = match code {
+                Code::NotControllable => {
+                    let plan = compiled.plan.expect("a plan");
+                    matches!(kirk_network::check(&plan.network), Ok(kirk_network::Verdict::Uncontrollable(_)))
+                }
+                _ => compiled.diagnostics.iter().any(|d| d.code == *code),
+            };
+            assert_eq!(found, expected, "{code} {title}:\n{example}\n{said}");
+            tried += 1;
+        }
+    }
+    assert!(tried > 80, "only {tried} examples");
+}

@@ -1,15 +1,94 @@
-//! Pages.
+//! Bounds and durations.
 
 use super::Page;
 
-pub(super) const NOT_A_NUMBER: Page = Page { meaning: "", wrong: "", right: "" };
-pub(super) const NEGATIVE: Page = Page { meaning: "", wrong: "", right: "" };
-pub(super) const LOWER_ABOVE_UPPER: Page = Page { meaning: "", wrong: "", right: "" };
-pub(super) const NOT_EXACT: Page = Page { meaning: "", wrong: "", right: "" };
-pub(super) const TOO_LARGE: Page = Page { meaning: "", wrong: "", right: "" };
-pub(super) const DELAY_NOT_CONTINGENT: Page = Page { meaning: "", wrong: "", right: "" };
-pub(super) const DELAY_REVERSED: Page = Page { meaning: "", wrong: "", right: "" };
-pub(super) const CONTINGENT_UNBOUNDED: Page = Page { meaning: "", wrong: "", right: "" };
-pub(super) const INFINITE_LOWER: Page = Page { meaning: "", wrong: "", right: "" };
-pub(super) const UNKNOWN_UNIT: Page = Page { meaning: "", wrong: "", right: "" };
-pub(super) const NO_BOUNDS: Page = Page { meaning: "", wrong: "", right: "" };
+pub(super) const NOT_A_NUMBER: Page = Page {
+    meaning: "A bound is a number of seconds (`15`, `1.5`, `1/2`, `1e3`), a number with a unit (`(minutes 5)`), a name from
+`defparameter`, a parameter of the program, or `:infinity` for an upper bound. Kirk does not calculate.",
+    wrong: "(define-control-program a () (declare (primitive) (duration (simple :upper-bound 5min))))",
+    right: "(define-control-program a () (declare (primitive) (duration (simple :upper-bound (minutes 5)))))",
+};
+
+pub(super) const NEGATIVE: Page = Page {
+    meaning: "A bound says how much time passes from a start to an end. The end never comes before the start.",
+    wrong: "(define-control-program a () (declare (primitive) (duration (simple :lower-bound -5))))",
+    right: "(define-control-program a () (declare (primitive) (duration (simple :lower-bound 5))))",
+};
+
+pub(super) const LOWER_ABOVE_UPPER: Page = Page {
+    meaning: "No duration is at least as long as the lower bound and at most as long as the upper one. They are probably
+swapped, or in different units.",
+    wrong: "(define-control-program a () (declare (primitive) (duration (simple :lower-bound 20 :upper-bound 15))))",
+    right: "(define-control-program a () (declare (primitive) (duration (simple :lower-bound 15 :upper-bound 20))))",
+};
+
+pub(super) const NOT_EXACT: Page = Page {
+    meaning: "Kirk counts time in whole microseconds and never rounds a bound, because a proof about rounded numbers is no
+proof about yours. A number with more than six decimals, or a fraction such as `1/3`, has to be rounded by
+you. `(minutes 1/3)` is 20 s and therefore fine.",
+    wrong: "(define-control-program a () (declare (primitive) (duration (simple :lower-bound 1/3))))",
+    right: "(define-control-program a () (declare (primitive) (duration (simple :lower-bound 0.333334))))",
+};
+
+pub(super) const TOO_LARGE: Page = Page {
+    meaning: "Durations are at most 10 billion seconds, some 317 years, so that sums of them can never overflow. To say that
+there is no limit, leave the upper bound out or write `:infinity`.",
+    wrong: "(define-control-program a () (declare (primitive) (duration (simple :upper-bound 1e99))))",
+    right: "(define-control-program a () (declare (primitive) (duration (simple :upper-bound :infinity))))",
+};
+
+pub(super) const DELAY_NOT_CONTINGENT: Page = Page {
+    meaning: "An observation delay says how late the executive hears that an activity has ended. What the executive ends
+itself it need not hear of: only a contingent duration has a delay. Probably `:contingent t` was forgotten; it
+stands after `(simple ...)`.",
+    wrong: "(define-control-program a ()
+  (declare (primitive)
+    (duration (simple :upper-bound 10 :max-observation-delay 5))))",
+    right: "(define-control-program a ()
+  (declare (primitive)
+    (duration (simple :upper-bound 10 :max-observation-delay 5) :contingent t)))",
+};
+
+pub(super) const DELAY_REVERSED: Page = Page {
+    meaning: "The news of an end comes at least `:min-observation-delay` and at most `:max-observation-delay` after it. The
+least is above the most, or only the least is given. A delay that may never end is written
+`:max-observation-delay :infinity`.",
+    wrong: "(define-control-program a ()
+  (declare (primitive)
+    (duration (simple :upper-bound 10 :min-observation-delay 5) :contingent t)))",
+    right: "(define-control-program a ()
+  (declare (primitive)
+    (duration (simple :upper-bound 10 :min-observation-delay 5 :max-observation-delay 8) :contingent t)))",
+};
+
+pub(super) const CONTINGENT_UNBOUNDED: Page = Page {
+    meaning: "Nature decides how long a contingent activity takes, within its bounds. Without an upper bound it might never
+end, and nothing could be promised about what comes after it.",
+    wrong: "(define-control-program a ()
+  (declare (primitive) (duration (simple :lower-bound 5) :contingent t)))",
+    right: "(define-control-program a ()
+  (declare (primitive) (duration (simple :lower-bound 5 :upper-bound 60) :contingent t)))",
+};
+
+pub(super) const INFINITE_LOWER: Page = Page {
+    meaning: "An activity that takes at least forever never ends. Only an upper bound, and the longest delay, may be
+`:infinity`.",
+    wrong: "(define-control-program a () (declare (primitive) (duration (simple :lower-bound :infinity))))",
+    right: "(define-control-program a () (declare (primitive) (duration (simple :upper-bound :infinity))))",
+};
+
+pub(super) const UNKNOWN_UNIT: Page = Page {
+    meaning: "The units of time are `microseconds`, `seconds`, `minutes`, `hours` and `days`, each applied to one number. A
+plain number is seconds.",
+    wrong: "(define-control-program a () (declare (primitive) (duration (simple :upper-bound (minuts 5)))))",
+    right: "(define-control-program a () (declare (primitive) (duration (simple :upper-bound (minutes 5)))))",
+};
+
+pub(super) const NO_BOUNDS: Page = Page {
+    meaning: "A `with-temporal-constraint` whose constraint has neither a lower nor an upper bound constrains nothing.
+Probably a bound was forgotten; if not, the form can go.",
+    wrong: "(define-control-program main ()
+  (with-temporal-constraint (simple-temporal) (a)))",
+    right: "(define-control-program main ()
+  (with-temporal-constraint (simple-temporal :upper-bound 60) (a)))",
+};

@@ -1,15 +1,107 @@
-//! Pages.
+//! Names, calls, and how programs unfold.
 
 use super::Page;
 
-pub(super) const UNKNOWN_PROGRAM: Page = Page { meaning: "", wrong: "", right: "" };
-pub(super) const DEFINED_TWICE: Page = Page { meaning: "", wrong: "", right: "" };
-pub(super) const RECURSION: Page = Page { meaning: "", wrong: "", right: "" };
-pub(super) const WRONG_ARGUMENTS: Page = Page { meaning: "", wrong: "", right: "" };
-pub(super) const NO_ENTRY: Page = Page { meaning: "", wrong: "", right: "" };
-pub(super) const NEVER_USED: Page = Page { meaning: "", wrong: "", right: "" };
-pub(super) const UNKNOWN_NAME: Page = Page { meaning: "", wrong: "", right: "" };
-pub(super) const STARTS_AT_DELAYED_END: Page = Page { meaning: "", wrong: "", right: "" };
-pub(super) const TOO_MANY_EPISODES: Page = Page { meaning: "", wrong: "", right: "" };
-pub(super) const CALLS_TOO_DEEP: Page = Page { meaning: "", wrong: "", right: "" };
-pub(super) const FREE_PARAMETERS: Page = Page { meaning: "", wrong: "", right: "" };
+pub(super) const UNKNOWN_PROGRAM: Page = Page {
+    meaning: "A form of a body that is no operator is a call, and no program of this name is defined, in any place of the
+sources. Programs may be defined after their use. A program of another package is called as `package:name`.",
+    wrong: "(define-control-program shower () (declare (primitive)))
+(define-control-program main () (shover))",
+    right: "(define-control-program shower () (declare (primitive)))
+(define-control-program main () (shower))",
+};
+
+pub(super) const DEFINED_TWICE: Page = Page {
+    meaning: "Two definitions of the same kind have the same name in the same package, so a call could mean either. Upper
+and lower case make no difference in names.",
+    wrong: "(define-control-program a () (declare (primitive)))
+(define-control-program A () (declare (primitive)))",
+    right: "(define-control-program a () (declare (primitive)))
+(define-control-program b () (declare (primitive)))",
+};
+
+pub(super) const RECURSION: Page = Page {
+    meaning: "A program calls itself, directly or through others; the message shows the circle. A mission is a fixed set of
+events, so programs are unfolded before anything is executed, and this one would never end. Write repetitions
+out.",
+    wrong: "(define-control-program a () (sequence () (b) (a)))",
+    right: "(define-control-program a () (sequence () (b) (b)))",
+};
+
+pub(super) const WRONG_ARGUMENTS: Page = Page {
+    meaning: "A program is called with as many arguments as it has parameters.",
+    wrong: "(define-control-program move (glider to) (declare (primitive)))
+(define-control-program main () (move 'g1))",
+    right: r##"(define-control-program move (glider to) (declare (primitive)))
+(define-control-program main () (move 'g1 "start"))"##,
+};
+
+pub(super) const NO_ENTRY: Page = Page {
+    meaning: "A mission starts with the program `main`, or with the one given by `--entry NAME`. With several packages, it
+is looked for in the one given by `-P`.",
+    wrong: "(define-control-program mian () (declare (primitive)))",
+    right: "(define-control-program main () (declare (primitive)))",
+};
+
+pub(super) const NEVER_USED: Page = Page {
+    meaning: "Nothing that the program to start from does leads to this one. It may be a forgotten call, or it may be left
+over. When another entry is chosen with `--entry`, programs that nobody calls are taken for entries as well
+and are not reported.",
+    wrong: "(define-control-program a () (declare (primitive)))
+(define-control-program b () (declare (primitive)))
+(define-control-program main () (a))",
+    right: "(define-control-program a () (declare (primitive)))
+(define-control-program b () (declare (primitive)))
+(define-control-program main () (a) (b))",
+};
+
+pub(super) const UNKNOWN_NAME: Page = Page {
+    meaning: "A name that stands for a value is a parameter of the program it is used in, or is defined by `defparameter` or
+`defconstant`. A symbol that stands for itself is quoted: `'north`.",
+    wrong: "(define-control-program a () (declare (primitive) (duration (simple :upper-bound *limit*))))",
+    right: "(defparameter *limit* 60)
+(define-control-program a () (declare (primitive) (duration (simple :upper-bound *limit*))))",
+};
+
+pub(super) const STARTS_AT_DELAYED_END: Page = Page {
+    meaning: "Without slack, the end of one activity and the start of the next are one event. If the end is up to Nature and
+heard late, the next activity starts at the true end, before anybody has heard of it. That is right if the
+activity starts by itself, or is carried out by the one who knows; it is not what you want if the executive
+has to start it. Then use slack: it starts when the news has come.",
+    wrong: "(define-control-program downlink ()
+  (declare (primitive)
+    (duration (simple :lower-bound 15 :upper-bound 30 :max-observation-delay 5) :contingent t)))
+(define-control-program sync () (declare (primitive)))
+(define-control-program main ()
+  (sequence (:slack nil) (downlink) (sync)))",
+    right: "(define-control-program downlink ()
+  (declare (primitive)
+    (duration (simple :lower-bound 15 :upper-bound 30 :max-observation-delay 5) :contingent t)))
+(define-control-program sync () (declare (primitive)))
+(define-control-program main ()
+  (sequence (:slack t) (downlink) (sync)))",
+};
+
+pub(super) const TOO_MANY_EPISODES: Page = Page {
+    meaning: "Every call is an episode of its own, and so is every call it leads to: a program that calls another twice,
+which calls a third twice, and so on, doubles with each step. Kirk counts before it unfolds and stops at
+200,000 episodes.",
+    wrong: "",
+    right: "",
+};
+
+pub(super) const CALLS_TOO_DEEP: Page = Page {
+    meaning: "Programs that call one another in a chain, and the forms around the calls, unfold to a tree of episodes. Its
+depth may be at most 1,000. Call the programs one after the other from one place instead of each from the one
+before.",
+    wrong: "",
+    right: "",
+};
+
+pub(super) const FREE_PARAMETERS: Page = Page {
+    meaning: "The program to start from has parameters, and nobody gives them a value. That does no harm as long as no bound
+depends on them. To start with definite values, write a program `main` that calls it with arguments.",
+    wrong: "(define-control-program main (glider) (declare (primitive)))",
+    right: "(define-control-program move (glider) (declare (primitive)))
+(define-control-program main () (move 'g1))",
+};

@@ -1,13 +1,103 @@
-//! Pages.
+//! Packages, classes, conditions, and whether a mission can be executed.
 
 use super::Page;
 
-pub(super) const UNKNOWN_PACKAGE: Page = Page { meaning: "", wrong: "", right: "" };
-pub(super) const PACKAGE_NOT_CHOSEN: Page = Page { meaning: "", wrong: "", right: "" };
-pub(super) const UNKNOWN_CLASS: Page = Page { meaning: "", wrong: "", right: "" };
-pub(super) const UNKNOWN_ACCESSOR: Page = Page { meaning: "", wrong: "", right: "" };
-pub(super) const WRONG_TYPE: Page = Page { meaning: "", wrong: "", right: "" };
-pub(super) const BAD_CONDITION: Page = Page { meaning: "", wrong: "", right: "" };
-pub(super) const NOT_PLANNED_WITH: Page = Page { meaning: "", wrong: "", right: "" };
-pub(super) const UNKNOWN_TYPE: Page = Page { meaning: "", wrong: "", right: "" };
-pub(super) const NOT_CONTROLLABLE: Page = Page { meaning: "", wrong: "", right: "" };
+pub(super) const UNKNOWN_PACKAGE: Page = Page {
+    meaning: "A package is defined by `defpackage` before it is entered by `in-package`, used by another, written before a
+name, or chosen with `-P`.",
+    wrong: r##"(defpackage #:scenario1)
+(in-package #:scenaro1)"##,
+    right: r##"(defpackage #:scenario1)
+(in-package #:scenario1)"##,
+};
+
+pub(super) const PACKAGE_NOT_CHOSEN: Page = Page {
+    meaning: "The source defines several packages, and each may have a program to start from. Say which one is meant with
+`-P NAME`. With one package or none, `-P` is not needed.",
+    wrong: r##"(defpackage #:astronaut)
+(defpackage #:robot)"##,
+    right: r##"(defpackage #:robot)
+(in-package #:robot)"##,
+};
+
+pub(super) const UNKNOWN_CLASS: Page = Page {
+    meaning: "A class extends a class that is not defined.",
+    wrong: "(defclass vehicle () ())
+(defclass glider (vehcile) ())",
+    right: "(defclass vehicle () ())
+(defclass glider (vehicle) ())",
+};
+
+pub(super) const UNKNOWN_ACCESSOR: Page = Page {
+    meaning: "A condition speaks of a slot through its `:reader` or `:accessor`, and no class has one of this name. A slot
+without either cannot be spoken of.",
+    wrong: "(defclass glider () ((place :initarg :place)))
+(define-control-program move (g)
+  (declare (primitive) (effect (at :end (= (place g) 5)))))",
+    right: "(defclass glider () ((place :initarg :place :accessor place)))
+(define-control-program move (g)
+  (declare (primitive) (effect (at :end (= (place g) 5)))))",
+};
+
+pub(super) const WRONG_TYPE: Page = Page {
+    meaning: "The value does not belong to the type of the slot, so the condition could never hold, or the slot would begin
+with a value it cannot have. Text, `t` and `nil`, numbers and symbols are checked against `(member ...)`,
+`boolean`, `string`, `integer` and their like.",
+    wrong: r##"(defclass glider () ((place :type (member "start" "end") :accessor place)))
+(define-control-program move (g)
+  (declare (primitive) (effect (at :end (= (place g) "strat")))))"##,
+    right: r##"(defclass glider () ((place :type (member "start" "end") :accessor place)))
+(define-control-program move (g)
+  (declare (primitive) (effect (at :end (= (place g) "start")))))"##,
+};
+
+pub(super) const BAD_CONDITION: Page = Page {
+    meaning: "A condition is `(= (accessor object) value)` or `(accessor object)`, put together with `and`, `or` and `not`,
+and said of a time with `(at :start c)`, `(at :end c)` or `(over :all c)`.",
+    wrong: "(defclass glider () ((place :accessor place)))
+(define-control-program move (g)
+  (declare (primitive) (requires (at :begin (= (place g) nil)))))",
+    right: "(defclass glider () ((place :accessor place)))
+(define-control-program move (g)
+  (declare (primitive) (requires (at :start (= (place g) nil)))))",
+};
+
+pub(super) const NOT_PLANNED_WITH: Page = Page {
+    meaning: "Conditions and effects are read, resolved, checked against the classes and kept with the episode, so that
+other tools can use them. Kirk itself does not plan: it takes the program as it is written and does not look
+for activities that would bring about what another one requires, nor does it check that one does not undo what
+another needs.",
+    wrong: "(defclass glider () ((place :accessor place)))
+(define-control-program move (g)
+  (declare (primitive) (requires (at :start (= (place g) nil)))))",
+    right: "(define-control-program move (g)
+  (declare (primitive)))",
+};
+
+pub(super) const UNKNOWN_TYPE: Page = Page {
+    meaning: "The type of a slot is neither a class nor a type of Lisp that kirk knows. The slot is kept, and its values are
+not checked.",
+    wrong: "(defclass glider ()
+  ((id :type integr)))",
+    right: "(defclass glider ()
+  ((id :type integer)))",
+};
+
+pub(super) const NOT_CONTROLLABLE: Page = Page {
+    meaning: "There is no strategy that keeps every constraint whatever Nature does within its bounds. The message names the
+bounds that do not go together and adds them up: each contributes time (`+`) or needs it (`-`), and in the
+worst case the sum is below zero. To make the mission possible it is enough to change one of them by that
+much: a longer deadline, a shorter activity, a narrower contingent duration, news that comes sooner, or slack
+where two events are forced together. A schedule for the average case may exist all the same; kirk promises
+more than that.",
+    wrong: "(define-control-program drive ()
+  (declare (primitive) (duration (simple :lower-bound 15 :upper-bound 20) :contingent t)))
+(define-control-program main ()
+  (with-temporal-constraint (simple-temporal :upper-bound 18)
+    (drive)))",
+    right: "(define-control-program drive ()
+  (declare (primitive) (duration (simple :lower-bound 15 :upper-bound 20) :contingent t)))
+(define-control-program main ()
+  (with-temporal-constraint (simple-temporal :upper-bound 20)
+    (drive)))",
+};

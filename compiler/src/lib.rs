@@ -1,4 +1,64 @@
-//! RMPL source to a delay STNU, or diagnostics.
+//! From RMPL source to a delay STNU, or diagnostics.
+//!
+//! ```text
+//!         read         parse       analyse         expand            lower
+//!  text ---------> forms -----> ast -----> typed ----------> episodes -----> network + origins
+//!    grammar/rmpl.pest                                                              |
+//!                                             conflict (from kirk-network) ---> explain ---> diagnostic
+//! ```
+//!
+//! Each phase is one public function in a file of its own. All but the last two take a program however broken, return
+//! what can be made of it, and append what is wrong to one [`problem::Problems`]; `expand` and `lower` run only on a
+//! program without errors. [`compile`] calls them in turn:
+//!
+//! ```
+//! use kirk_compiler::{Options, Source, compile};
+//!
+//! let text = "
+//! (define-control-program eat ()
+//!   (declare (primitive) (duration (simple :lower-bound 15 :upper-bound 20))))
+//! (define-control-program drive ()
+//!   (declare (primitive) (duration (simple :lower-bound 15 :upper-bound 20) :contingent t)))
+//! (define-control-program main ()
+//!   (with-temporal-constraint (simple-temporal :upper-bound 60)
+//!     (sequence (:slack t) (eat) (drive))))";
+//! let compilation = compile(&[Source::new("morning.rmpl", text)], &Options::default());
+//! assert_eq!(compilation.diagnostics, []);
+//!
+//! let plan = compilation.plan.expect("no errors, so there is a plan");
+//! assert_eq!(plan.network.contingents().len(), 1);
+//! assert_eq!(plan.origins.contingents[0].text, "`drive` takes 15 to 20 s, Nature decides");
+//! assert_eq!(plan.network.id(plan.network.origin()), "main:start");
+//!
+//! // A slip: the message knows what was meant, and there is no plan.
+//! let compilation = compile(&[Source::new("morning.rmpl", text.replace("(eat)", "(eta)"))], &Options::default());
+//! assert_eq!(compilation.diagnostics[0].help.as_deref(), Some("Did you mean `eat`?"));
+//! assert!(compilation.plan.is_none());
+//! ```
+//!
+//! # Words
+//!
+//! - A **form** is an s-expression with its place. A **program** is what `define-control-program` defines: **primitive** if
+//!   it is an activity, else it has a **body**.
+//! - An **episode** is one occurrence of a program or of a body form, from its start event to its end event.
+//! - The **origin** of a constraint is the place and the sentence it comes from. (The origin of a network, an event, is
+//!   another thing: the start of the entry program.)
+//! - A **diagnostic** has a stable [`Code`], a page for which [`explain`] gives, and places in the sources.
+//!
+//! # Invariants
+//!
+//! - Any text gives a result: no panic, no recursion deeper than the limits of the reader and of `expand`, time and
+//!   memory linear in the text and in the number of episodes, both bounded.
+//! - There is a plan exactly if no diagnostic is an error. Every place lies inside its source, on character boundaries.
+//! - `origins.requirements[i]` belongs to `network.requirements()[i]`, and so for the contingent links. The network is not
+//!   merged: every "at the same time" is a requirement [0, 0], so that a conflict can point at it.
+//! - Event names are unique, lower case, and depend on nothing but the source. Two runs give the same bytes.
+//! - Nothing a user wrote is ignored silently.
+//!
+//! # Deliberately absent
+//!
+//! Files, colours and exit statuses (the command line has them), merging and every verdict (`kirk-network`), planning with
+//! conditions and effects, macros and arithmetic of Lisp.
 
 pub mod analyse;
 pub mod ast;

@@ -464,7 +464,8 @@ fn unescape(text: &str) -> String {
 }
 
 fn unreadable(text: &str, span: Span) -> Diagnostic {
-    let shown: String = clip(text).escape_debug().collect();
+    let plain = |c: char| if c.is_control() { c.escape_debug().to_string() } else { c.to_string() };
+    let shown: String = clip(text).chars().map(plain).collect();
     let (message, help) = match text.chars().next() {
         Some('`' | ',') => (
             format!("`{shown}` is for Lisp macros, which kirk does not run"),

@@ -3,7 +3,8 @@
 use super::Page;
 
 pub(super) const UNKNOWN_TOP_LEVEL: Page = Page {
-    meaning: "A source consists of definitions: `define-control-program`, `defpackage`, `in-package`, `defclass`,
+    meaning:
+        "A source consists of definitions: `define-control-program`, `defpackage`, `in-package`, `defclass`,
 `defparameter` and `defconstant`. Other Lisp, such as `defun`, is not run. A body form such as `sequence` at
 the top level usually means that the program before it was closed too early.",
     wrong: "(define-control-progam main () (declare (primitive)))",

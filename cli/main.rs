@@ -1,2 +1,54 @@
-//! The `kirk` binary.
-fn main() {}
+//! The `kirk` binary: arguments, files, colours and exit statuses. Everything else is in the libraries.
+//!
+//! Exit status: 0 yes (controllable, completed, verified), 1 no, 2 the input or the command line is wrong.
+
+mod args;
+mod check;
+mod compile;
+mod conflict;
+mod explain;
+mod input;
+mod json;
+mod output;
+mod report;
+mod run;
+mod timetable;
+mod verify;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use args::{Arguments, Command};
+use output::Status;
+
+fn main() -> ExitCode {
+    // Deeply nested programs make deep (bounded) trees; the main thread's stack is not ours to size.
+    const STACK: usize = 256 << 20;
+    let arguments = Arguments::parse();
+    let work = std::thread::Builder::new().stack_size(STACK).spawn(move || execute(&arguments));
+    match work.map(std::thread::JoinHandle::join) {
+        Ok(Ok(status)) => ExitCode::from(status as u8),
+        Ok(Err(_)) => ExitCode::from(101),
+        Err(_) => ExitCode::from(Status::Wrong as u8),
+    }
+}
+
+fn execute(arguments: &Arguments) -> Status {
+    let result = match &arguments.command {
+        Command::Run(run) => run::run(run, &arguments.common),
+        Command::Check(check) => check::check(check, &arguments.common),
+        Command::Compile(compile) => compile::compile(compile, &arguments.common),
+        Command::Verify(verify) => verify::verify(verify, &arguments.common),
+        Command::Explain(explain) => explain::explain(explain),
+    };
+    match result {
+        Ok(status) => status,
+        // Whoever read our output has gone away; there is nobody left to tell.
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Status::Yes,
+        Err(error) => {
+            output::complain(&format!("cannot write the output: {error}"));
+            Status::Wrong
+        }
+    }
+}

@@ -1,9 +1,10 @@
 //! The codes of kirk's diagnostics: a stable number, a title, and a page for `kirk explain`.
 //!
 //! The hundreds digit says which part of kirk speaks: 1 reading, 2 forms and declarations, 3 names, 4 bounds and
-//! durations, 5 packages, classes and conditions, 6 executability. The pages live in `code/`, one file for each.
+//! durations, 5 packages, classes and conditions, 6 executability, 7 files, 8 executions. The pages live in `code/`, one file for each.
 
 mod bounds;
+mod files;
 mod forms;
 mod names;
 mod reading;
@@ -98,6 +99,12 @@ codes! {
     NotPlannedWith = 507, "conditions are not planned with", worlds::NOT_PLANNED_WITH;
     UnknownType = 508, "not a type kirk knows", worlds::UNKNOWN_TYPE;
     NotControllable = 601, "the program cannot be executed in every case", worlds::NOT_CONTROLLABLE;
+    CannotRead = 701, "a file that cannot be read", files::CANNOT_READ;
+    BadNetwork = 702, "not a network kirk can read", files::BAD_NETWORK;
+    NumbersTooLarge = 703, "durations that add up to too much", files::NUMBERS_TOO_LARGE;
+    BadObservation = 801, "not an observation of this mission", files::BAD_OBSERVATION;
+    ImpossibleObservation = 802, "news that the model rules out", files::IMPOSSIBLE_OBSERVATION;
+    BadRecord = 803, "not the record of an execution", files::BAD_RECORD;
 }
 
 /// The page on a code (`K0203`, in any case): what it means, a wrong and a right example. `None` if there is no such code.

@@ -1,6 +1,7 @@
 //! Why a network is not controllable: a semi-reducible negative cycle, in terms of the constraints a user wrote.
 
-use crate::time::Duration;
+use crate::model::Network;
+use crate::time::{Bound, Duration};
 
 /// The constraints that cannot all be honoured, whatever strategy is tried.
 ///
@@ -47,4 +48,20 @@ pub enum Part {
     AfterOrigin,
     /// A [0, 0] requirement by which merging made two events one: contributes nothing, but the conflict rests on it.
     Join(usize),
+}
+
+impl Share {
+    /// The bound itself, without sign: what the network says there. Zero for what has no bound.
+    pub fn bound(&self, network: &Network) -> Duration {
+        let finite = |bound: Bound| bound.finite().unwrap_or_default();
+        match self.part {
+            Part::RequirementUpper(index) => finite(network.requirements()[index].upper),
+            Part::RequirementLower(index) => finite(network.requirements()[index].lower),
+            Part::LinkLower(index) => network.contingents()[index].lower,
+            Part::LinkUpper(index) => network.contingents()[index].upper,
+            Part::DelayMin(index) => network.contingents()[index].delay.min,
+            Part::DelayMax(index) => finite(network.contingents()[index].delay.max),
+            Part::AfterOrigin | Part::Join(_) => Duration::ZERO,
+        }
+    }
 }

@@ -5,7 +5,10 @@ use serde::ser::{SerializeMap, SerializeSeq, Serializer};
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 
+use crate::controllability::Wait;
+use crate::dispatchable::Dispatchable;
 use crate::model::{ContingentLink, Delay, Event, EventId, ModelError, Name, Network, Requirement};
+use crate::stnu::{Edge, Link};
 use crate::time::{Bound, Duration};
 
 /// The `format` of the files read and written here.
@@ -318,6 +321,74 @@ impl Serialize for Document<'_> {
         )?;
         map.end()
     }
+}
+
+/// Writes a dispatchable network (`kirk-dispatchable/1`) as one line of JSON.
+///
+/// An edge says `to - from <= weight`; a wait says that `event` comes after `after`, and until `for` has happened not
+/// before `until` seconds after it.
+pub fn write_dispatchable(net: &Dispatchable, name: &str, label: impl Fn(u32) -> String) -> String {
+    #[derive(Serialize)]
+    struct File<'a> {
+        format: &'a str,
+        name: &'a str,
+        time_unit: &'a str,
+        origin: String,
+        events: Vec<String>,
+        edges: Vec<EdgeFile>,
+        waits: Vec<WaitFile>,
+        contingents: Vec<LinkFile>,
+    }
+    #[derive(Serialize)]
+    struct EdgeFile {
+        from: String,
+        to: String,
+        weight: Seconds,
+    }
+    #[derive(Serialize)]
+    struct WaitFile {
+        event: String,
+        r#for: String,
+        until: Seconds,
+        after: String,
+    }
+    #[derive(Serialize)]
+    struct LinkFile {
+        from: String,
+        to: String,
+        lower: Seconds,
+        upper: Seconds,
+    }
+    let micros = |micros| Seconds(Duration::from_micros(micros));
+    let edge =
+        |edge: &Edge| EdgeFile { from: label(edge.from), to: label(edge.to), weight: micros(edge.weight) };
+    let wait = |wait: &Wait| {
+        let link = net.links[wait.link as usize];
+        WaitFile {
+            event: label(wait.waiter),
+            r#for: label(link.contingent),
+            until: micros(-wait.weight),
+            after: label(link.activation),
+        }
+    };
+    let link = |link: &Link| LinkFile {
+        from: label(link.activation),
+        to: label(link.contingent),
+        lower: micros(link.lower),
+        upper: micros(link.upper),
+    };
+    let file = File {
+        format: "kirk-dispatchable/1",
+        name,
+        time_unit: "s",
+        origin: label(0),
+        events: (0..net.nodes).map(&label).collect(),
+        edges: net.edges.iter().map(edge).collect(),
+        waits: net.waits.iter().map(wait).collect(),
+        contingents: net.links.iter().map(link).collect(),
+    };
+    serde_json::to_string(&file)
+        .unwrap_or_else(|error| unreachable!("a network has only strings and numbers: {error}"))
 }
 
 struct List<'a, T, F>(&'a [T], F);

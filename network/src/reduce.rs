@@ -16,9 +16,9 @@
 
 use crate::blame::natures_conflict;
 use crate::conflict::Conflict;
-use crate::model::{ContingentLink, EventId, Network};
+use crate::model::{ContingentLink, Delay, Event, EventId, Name, Network, Requirement};
 use crate::stnu::{Edge, Link, Stnu, TooLarge, add};
-use crate::time::{Bound, Time};
+use crate::time::{Bound, Duration, Time};
 use crate::trees::{Trees, link_to};
 
 /// A plain STNU that is dynamically controllable iff the network it is from is variable-delay controllable (with the
@@ -92,6 +92,62 @@ pub fn reduce(network: &Network) -> Result<Reduction, ReduceError> {
 /// Reduces what is left of an execution: everything known is placed at the origin, nothing else happens before `now`.
 pub fn reduce_rest(network: &Network, progress: &Progress) -> Result<Reduction, ReduceError> {
     Reducer::new(network, Some(progress))?.reduce()
+}
+
+impl Reduction {
+    /// What to call each node: the name of its event, with a prime if the node is the moment of acting on late news.
+    pub fn labels(&self, merged: &Network) -> Vec<String> {
+        let mut labels: Vec<String> = Vec::with_capacity(self.event_of.len());
+        for (node, &event) in self.event_of.iter().enumerate() {
+            let place = self.places[event.index()];
+            let mut label = merged.label(event).to_string();
+            let late = place.node == node as u32 && (place.earliest, place.latest) != (0, 0);
+            if late {
+                label.push('\'');
+                while merged.find(&label).is_some() {
+                    label.push('\'');
+                }
+            }
+            labels.push(label);
+        }
+        labels
+    }
+
+    /// The plain STNU as a network of its own, for people and for other tools.
+    pub fn to_network(&self, merged: &Network) -> Network {
+        let names = self.event_of.iter().zip(self.labels(merged)).map(|(&event, label)| {
+            let names = &merged.events()[event.index()].names;
+            if names.iter().any(|name| name.text == label) {
+                Event { names: names.clone() }
+            } else {
+                Event { names: vec![Name { text: label, internal: false }] }
+            }
+        });
+        let requirement = |edge: &Edge| Requirement {
+            from: EventId(edge.from),
+            to: EventId(edge.to),
+            lower: Bound::Infinite,
+            upper: Duration::from_micros(edge.weight).into(),
+        };
+        // That nothing comes before the origin goes without saying.
+        let said =
+            self.stnu.edges.iter().zip(&self.sources).filter(|(_, source)| **source != Source::AfterOrigin);
+        let links = self.stnu.links.iter().map(|link| ContingentLink {
+            from: EventId(link.activation),
+            to: EventId(link.contingent),
+            lower: Duration::from_micros(link.lower),
+            upper: Duration::from_micros(link.upper),
+            delay: Delay::NONE,
+        });
+        Network::new(
+            merged.name().to_string(),
+            EventId(0),
+            names.collect(),
+            said.map(|(edge, _)| requirement(edge)).collect(),
+            links.collect(),
+        )
+        .unwrap_or_else(|errors| unreachable!("the reduction of a valid network is valid: {errors:?}"))
+    }
 }
 
 /// The news a group is acted on by: it arrives in `[min, max]` after the root of the group.

@@ -1,0 +1,202 @@
+//! The command line.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Compiles RMPL control programs to temporal networks with uncertainty, proves that they can always be executed (or
+/// shows which lines make it impossible), and executes them.
+#[derive(Debug, Parser)]
+#[command(name = "kirk", version, arg_required_else_help = true)]
+#[command(
+    after_help = "Exit status: 0 yes (controllable, completed, verified), 1 no, 2 wrong input or command line."
+)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+    #[command(flatten)]
+    pub(crate) common: Common,
+}
+
+/// Options of every command.
+#[derive(Debug, Args)]
+pub(crate) struct Common {
+    /// When to use colours in messages.
+    #[arg(long, global = true, value_enum, default_value_t = Color::Auto, value_name = "WHEN")]
+    pub(crate) color: Color,
+    /// Say only what was asked for: no notes, no warnings.
+    #[arg(short, long, global = true)]
+    pub(crate) quiet: bool,
+    /// Say more.
+    #[arg(short, long, global = true, conflicts_with = "quiet")]
+    pub(crate) verbose: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Color {
+    Auto,
+    Always,
+    Never,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Compiles, proves and executes a mission, and prints its timetable.
+    Run(Run),
+    /// Prints all diagnostics and the verdict for each file.
+    Check(Check),
+    /// Prints what a mission is compiled to.
+    Compile(Compile),
+    /// Checks a recorded execution against a mission, independently of what executed it.
+    Verify(Verify),
+    /// Explains a diagnostic code, such as K0203.
+    Explain(Explain),
+}
+
+/// Which program of a file is meant.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Selection {
+    /// The package whose programs are meant; needed only when a file defines more than one.
+    #[arg(short = 'P', long, value_name = "NAME")]
+    pub(crate) package: Option<String>,
+    /// The control program to start from.
+    #[arg(long, value_name = "NAME", default_value = "main")]
+    pub(crate) entry: String,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TextOrJson {
+    Text,
+    Json,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Run {
+    /// The mission: RMPL (.rmpl, .lisp), a network (.json), or `-` for standard input.
+    #[arg(value_name = "FILE")]
+    pub(crate) file: String,
+    #[command(flatten)]
+    pub(crate) selection: Selection,
+    /// Simulate in virtual time.
+    #[arg(long)]
+    pub(crate) simulate: bool,
+    /// News of EVENT arrives at T seconds (repeatable).
+    #[arg(long, value_name = "EVENT@T")]
+    pub(crate) observe: Vec<String>,
+    /// A JSON object of event: time, as if each were given with --observe.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) observations: Option<String>,
+    /// How Nature chooses durations and delays where the observations leave a choice.
+    #[arg(long, value_enum, default_value_t = Nature::Upper)]
+    pub(crate) nature: Nature,
+    /// The seed of `--nature random`.
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    pub(crate) seed: u64,
+    /// What to do with news that says more than the plan assumed.
+    #[arg(long, value_enum, default_value_t = StrategyName::Optimistic)]
+    pub(crate) strategy: StrategyName,
+    /// The same as --strategy optimistic, which is the default.
+    #[arg(long, conflicts_with = "strategy")]
+    pub(crate) optimistic: bool,
+    /// Also print the events that no user wrote.
+    #[arg(long)]
+    pub(crate) internal: bool,
+    /// How to print the result.
+    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
+    pub(crate) format: TextOrJson,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Nature {
+    /// Durations and delays as long as possible.
+    Upper,
+    /// Durations and delays as short as possible.
+    Lower,
+    /// Anything possible.
+    Random,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum StrategyName {
+    /// Hold early news until the plan expects it.
+    Buffer,
+    /// Plan anew with it.
+    Optimistic,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Check {
+    /// Missions or networks, or `-` for standard input.
+    #[arg(value_name = "FILE", required = true)]
+    pub(crate) files: Vec<String>,
+    #[command(flatten)]
+    pub(crate) selection: Selection,
+    /// How to print the result; JSON is one document per file, one per line.
+    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
+    pub(crate) format: TextOrJson,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Compile {
+    /// The mission or network, or `-` for standard input.
+    #[arg(value_name = "FILE")]
+    pub(crate) file: String,
+    #[command(flatten)]
+    pub(crate) selection: Selection,
+    /// Which stage to print.
+    #[arg(long, value_enum, default_value_t = Stage::Stnu, value_name = "WHAT")]
+    pub(crate) emit: Stage,
+    /// How to print it.
+    #[arg(long, value_enum, default_value_t = StageFormat::Text)]
+    pub(crate) format: StageFormat,
+    /// Where to write it, instead of standard output.
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: Option<String>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Stage {
+    /// The program as read.
+    Ast,
+    /// The program unfolded: every occurrence with its events and bounds.
+    Episodes,
+    /// The merged delay STNU.
+    Stnu,
+    /// The plain STNU after the delay reduction.
+    Reduced,
+    /// The network that is executed.
+    Dispatchable,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum StageFormat {
+    Text,
+    Json,
+    Sexpr,
+    Dot,
+    Graphml,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Verify {
+    /// The recorded execution (`kirk run --format json`).
+    #[arg(value_name = "EXECUTION")]
+    pub(crate) execution: String,
+    /// The mission or network it is checked against.
+    #[arg(value_name = "FILE")]
+    pub(crate) file: String,
+    /// The package whose programs are meant; needed only when a file defines more than one.
+    #[arg(short = 'P', long, value_name = "NAME")]
+    pub(crate) package: Option<String>,
+    /// The control program that was executed, if not the one the record names.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) entry: Option<String>,
+    /// How to print the result.
+    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
+    pub(crate) format: TextOrJson,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Explain {
+    /// The code, such as K0203.
+    #[arg(value_name = "CODE")]
+    pub(crate) code: String,
+}

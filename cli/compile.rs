@@ -1,0 +1,175 @@
+//! `kirk compile`: prints a stage of the compilation.
+
+use std::io;
+
+use kirk_compiler::{Severity, to_sexpr};
+use kirk_network::dispatchable::dispatchable;
+use kirk_network::merge::merge;
+use kirk_network::reduce::{ReduceError, reduce};
+use kirk_network::{Network, graphml, json, text};
+use serde::Serialize;
+
+use crate::args::{Common, Compile, Stage, StageFormat};
+use crate::check::{judge, too_large};
+use crate::input::{Input, load};
+use crate::json::line;
+use crate::output::{Status, complain, print};
+use crate::report::Reporter;
+
+pub(crate) fn compile(arguments: &Compile, common: &Common) -> io::Result<Status> {
+    let mut input = load(&arguments.file, &arguments.selection);
+    let emitted = emit(arguments, &mut input);
+    Reporter::new(&input.sources).show(&input.diagnostics, common)?;
+    let text = match emitted {
+        Ok(text) => text,
+        Err(Refusal::Input) => return Ok(Status::Wrong),
+        Err(Refusal::NotControllable) => return Ok(Status::No),
+        Err(Refusal::Options(message)) => {
+            complain(&message);
+            return Ok(Status::Wrong);
+        }
+    };
+    match &arguments.output {
+        None => print(&text)?,
+        Some(file) => {
+            if let Err(error) = std::fs::write(file, &text) {
+                complain(&format!("cannot write `{file}`: {error}"));
+                return Ok(Status::Wrong);
+            }
+        }
+    }
+    Ok(Status::Yes)
+}
+
+/// Why nothing was emitted.
+enum Refusal {
+    /// The diagnostics say why.
+    Input,
+    /// The diagnostics say why: there is nothing to execute.
+    NotControllable,
+    /// The options do not go together.
+    Options(String),
+}
+
+fn emit(arguments: &Compile, input: &mut Input) -> Result<String, Refusal> {
+    let format = arguments.format;
+    if let Stage::Ast | Stage::Episodes = arguments.emit {
+        return emit_program(arguments, input);
+    }
+    let Some(network) = &input.network else { return Err(Refusal::Input) };
+    let merged = merge(network).network;
+    if arguments.emit == Stage::Stnu {
+        return emit_network(&merged, arguments);
+    }
+    let reduction = match reduce(&merged) {
+        Ok(reduction) => reduction,
+        Err(ReduceError::TooLarge) => {
+            input.diagnostics.push(too_large());
+            return Err(Refusal::Input);
+        }
+        Err(ReduceError::Never(_)) => {
+            judge(input);
+            return Err(Refusal::NotControllable);
+        }
+    };
+    if arguments.emit == Stage::Reduced {
+        return emit_network(&reduction.to_network(&merged), arguments);
+    }
+    let net = match dispatchable(&reduction.stnu) {
+        Ok(Some(net)) => net,
+        Ok(None) => {
+            judge(input);
+            return Err(Refusal::NotControllable);
+        }
+        Err(_) => {
+            input.diagnostics.push(too_large());
+            return Err(Refusal::Input);
+        }
+    };
+    let labels = reduction.labels(&merged);
+    let label = |node: u32| labels[node as usize].clone();
+    match format {
+        StageFormat::Text => Ok(text::dispatchable(&net, label)),
+        StageFormat::Json => Ok(json::write_dispatchable(&net, merged.name(), label) + "\n"),
+        StageFormat::Sexpr => sexpr_of_json(&json::write_dispatchable(&net, merged.name(), label)),
+        StageFormat::Dot => Ok(kirk_network::dot::dispatchable(&net, label)),
+        StageFormat::Graphml => Err(no_such(arguments)),
+    }
+}
+
+fn emit_program(arguments: &Compile, input: &Input) -> Result<String, Refusal> {
+    let Some(compilation) = &input.compilation else {
+        if input.network.is_none() {
+            return Err(Refusal::Input);
+        }
+        let stage = stage_name(arguments.emit);
+        return Err(Refusal::Options(format!(
+            "`{}` is a network; it has no {stage}. Stages of a network: stnu, reduced, dispatchable",
+            arguments.file
+        )));
+    };
+    if input.diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error) {
+        return Err(Refusal::Input);
+    }
+    match (arguments.emit, &compilation.episodes) {
+        (Stage::Ast, _) => emit_serialized(&compilation.ast, arguments),
+        (_, Some(episodes)) => emit_serialized(episodes, arguments),
+        (_, None) => Err(Refusal::Input),
+    }
+}
+
+fn emit_serialized(value: &impl Serialize, arguments: &Compile) -> Result<String, Refusal> {
+    match arguments.format {
+        // The program is Lisp: its text is an s-expression.
+        StageFormat::Text | StageFormat::Sexpr => sexpr(value),
+        StageFormat::Json => document(value),
+        StageFormat::Dot | StageFormat::Graphml => Err(no_such(arguments)),
+    }
+}
+
+fn emit_network(network: &Network, arguments: &Compile) -> Result<String, Refusal> {
+    match arguments.format {
+        StageFormat::Text => Ok(text::network(network)),
+        StageFormat::Json => Ok(json::write(network) + "\n"),
+        StageFormat::Sexpr => sexpr_of_json(&json::write(network)),
+        StageFormat::Dot => Ok(kirk_network::dot::network(network)),
+        StageFormat::Graphml => {
+            let all = |errors: Vec<_>| errors.iter().map(|e| format!("{e}")).collect::<Vec<_>>().join("\n");
+            graphml::write(network).map_err(|errors: Vec<graphml::WriteError>| Refusal::Options(all(errors)))
+        }
+    }
+}
+
+fn document(value: &impl Serialize) -> Result<String, Refusal> {
+    line(value).map_err(|error| Refusal::Options(format!("cannot write this as JSON: {error}")))
+}
+
+fn sexpr(value: &impl Serialize) -> Result<String, Refusal> {
+    to_sexpr(value)
+        .map(|text| text + "\n")
+        .map_err(|error| Refusal::Options(format!("cannot write this as an s-expression: {error}")))
+}
+
+fn sexpr_of_json(text: &str) -> Result<String, Refusal> {
+    let value: serde_json::Value =
+        serde_json::from_str(text).map_err(|error| Refusal::Options(error.to_string()))?;
+    sexpr(&value)
+}
+
+fn no_such(arguments: &Compile) -> Refusal {
+    Refusal::Options(format!(
+        "--emit {} cannot be written as {:?}; try text, json or sexpr",
+        stage_name(arguments.emit),
+        arguments.format
+    ))
+}
+
+fn stage_name(stage: Stage) -> &'static str {
+    match stage {
+        Stage::Ast => "ast",
+        Stage::Episodes => "episodes",
+        Stage::Stnu => "stnu",
+        Stage::Reduced => "reduced",
+        Stage::Dispatchable => "dispatchable",
+    }
+}

@@ -1,0 +1,164 @@
+//! From the name of a file to a network, or to what is wrong with it.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+use kirk_compiler::{Code, Compilation, Diagnostic, Options, Origins, Source, Span, compile};
+use kirk_network::{Network, json};
+
+use crate::args::Selection;
+
+/// Everything that became of one input file.
+pub(crate) struct Input {
+    /// The file, for diagnostics to point into.
+    pub(crate) sources: Vec<Source>,
+    /// What there is to say about it.
+    pub(crate) diagnostics: Vec<Diagnostic>,
+    /// How far the compiler got, if it is RMPL.
+    pub(crate) compilation: Option<Compilation>,
+    /// The network, not merged; `None` if there was an error.
+    pub(crate) network: Option<Network>,
+    /// Where its constraints come from, if it is RMPL.
+    pub(crate) origins: Option<Origins>,
+}
+
+/// RMPL of more bytes than this is no program a person wrote.
+const LARGEST_PROGRAM: u64 = 16 << 20;
+/// Networks are written by machines.
+const LARGEST_NETWORK: u64 = 256 << 20;
+
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Rmpl,
+    Json,
+}
+
+/// Reads and compiles an input file; `-` is standard input.
+pub(crate) fn load(file: &str, selection: &Selection) -> Input {
+    let name = if file == "-" { "<stdin>" } else { file };
+    let text = match read(file, LARGEST_NETWORK) {
+        Ok(bytes) => match String::from_utf8(bytes) {
+            Ok(text) => text,
+            Err(error) => {
+                let line = error.as_bytes()[..error.utf8_error().valid_up_to()]
+                    .iter()
+                    .filter(|&&b| b == b'\n')
+                    .count();
+                let message = format!(
+                    "this is not UTF-8 text (line {}, byte {})",
+                    line + 1,
+                    error.utf8_error().valid_up_to()
+                );
+                return Input::broken(name, Diagnostic::error(Code::NotText, Span::default(), message).help(
+                    "kirk reads RMPL and networks as text; is this the right file, or a compiled or compressed one?",
+                ));
+            }
+        },
+        Err(message) => {
+            return Input::broken(name, Diagnostic::error(Code::CannotRead, Span::default(), message));
+        }
+    };
+    match kind(file, &text) {
+        Kind::Json => network(name, text),
+        Kind::Rmpl if text.len() as u64 > LARGEST_PROGRAM => {
+            let message =
+                format!("this file has {} bytes; kirk reads programs of up to {LARGEST_PROGRAM}", text.len());
+            Input::broken(name, Diagnostic::error(Code::TooLong, Span::default(), message))
+        }
+        Kind::Rmpl => program(name, text, selection),
+    }
+}
+
+/// The extension decides; without a known one, the first character.
+fn kind(file: &str, text: &str) -> Kind {
+    let extension = Path::new(file).extension().and_then(|e| e.to_str()).map(str::to_lowercase);
+    match extension.as_deref() {
+        Some("rmpl" | "lisp") => Kind::Rmpl,
+        Some("json") => Kind::Json,
+        _ if text.trim_start().starts_with('{') => Kind::Json,
+        _ => Kind::Rmpl,
+    }
+}
+
+/// The bytes of a file, at most so many, or a sentence that says why not.
+pub(crate) fn read(file: &str, most: u64) -> Result<Vec<u8>, String> {
+    let mut bytes = Vec::new();
+    let result = if file == "-" {
+        io::stdin().lock().take(most + 1).read_to_end(&mut bytes)
+    } else {
+        File::open(file).and_then(|open| {
+            if open.metadata()?.is_dir() {
+                return Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a directory"));
+            }
+            open.take(most + 1).read_to_end(&mut bytes)
+        })
+    };
+    match result {
+        Err(error) => {
+            let why = match error.kind() {
+                io::ErrorKind::NotFound => "there is no such file".to_string(),
+                io::ErrorKind::PermissionDenied => "you may not read it".to_string(),
+                io::ErrorKind::IsADirectory => "it is a directory; name a file in it".to_string(),
+                _ => error.to_string(),
+            };
+            Err(format!("cannot read `{file}`: {why}"))
+        }
+        Ok(_) if bytes.len() as u64 > most => {
+            Err(format!("`{file}` has more than {most} bytes; kirk does not read that"))
+        }
+        Ok(_) => Ok(bytes),
+    }
+}
+
+fn program(name: &str, text: String, selection: &Selection) -> Input {
+    let sources = vec![Source::new(name, text)];
+    let options = Options { package: selection.package.clone(), entry: selection.entry.clone() };
+    let mut compilation = compile(&sources, &options);
+    let diagnostics = std::mem::take(&mut compilation.diagnostics);
+    let (network, origins) = match compilation.plan.take() {
+        Some(plan) => (Some(plan.network), Some(plan.origins)),
+        None => (None, None),
+    };
+    Input { sources, diagnostics, compilation: Some(compilation), network, origins }
+}
+
+fn network(name: &str, text: String) -> Input {
+    let read = json::read(&text);
+    let sources = vec![Source::new(name, text)];
+    let mut input =
+        Input { sources, diagnostics: Vec::new(), compilation: None, network: None, origins: None };
+    match read {
+        Ok(network) => input.network = Some(network),
+        Err(problems) => {
+            input.diagnostics = problems
+                .into_iter()
+                .map(|problem| {
+                    let span = Span::new(0, problem.offset, problem.offset);
+                    Diagnostic::error(Code::BadNetwork, span, problem.message)
+                })
+                .collect();
+        }
+    }
+    input
+}
+
+impl Input {
+    fn broken(name: &str, diagnostic: Diagnostic) -> Input {
+        Input {
+            sources: vec![Source::new(name, "")],
+            diagnostics: vec![diagnostic],
+            compilation: None,
+            network: None,
+            origins: None,
+        }
+    }
+
+    /// What the network is called: the program it is of, or its own name.
+    pub(crate) fn program(&self, selection: &Selection) -> String {
+        match (&self.network, &self.compilation) {
+            (Some(network), None) => network.name().to_string(),
+            _ => selection.entry.to_lowercase(),
+        }
+    }
+}

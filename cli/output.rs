@@ -1,0 +1,33 @@
+//! What leaves the program: standard output, standard error, the exit status.
+
+use std::io::{self, Write};
+
+/// The exit status of a command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(u8)]
+pub(crate) enum Status {
+    /// Controllable, completed, verified.
+    Yes = 0,
+    /// Not controllable, failed, violated.
+    No = 1,
+    /// The input or the command line is wrong.
+    Wrong = 2,
+}
+
+/// Prints a text to standard output as it is.
+pub(crate) fn print(text: &str) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    out.write_all(text.as_bytes())?;
+    out.flush()
+}
+
+/// Prints a line to standard output.
+pub(crate) fn print_line(text: &str) -> io::Result<()> {
+    print(&format!("{text}\n"))
+}
+
+/// Prints a message about the command line to standard error.
+pub(crate) fn complain(message: &str) {
+    // If standard error is closed there is nobody to tell.
+    let _ = writeln!(io::stderr().lock(), "error: {message}");
+}

@@ -1,0 +1,45 @@
+//! The timetable of an execution, for people.
+
+use kirk_runtime::{Execution, How, Outcome, Row};
+
+/// One line for each row: time, event, how, and where the event must have happened if it was heard late.
+pub(crate) fn timetable(execution: &Execution) -> String {
+    let end = match (&execution.outcome, &execution.failure) {
+        (Outcome::Failed, Some(failure)) => {
+            format!("failed at {} s: {} ({})", failure.time.0, failure.detail, failure.reason)
+        }
+        (Outcome::Failed, None) => "failed".to_string(),
+        (Outcome::Completed, _) => format!("completed in {} s", execution.makespan.0),
+    };
+    let cells: Vec<[String; 3]> = execution.rows.iter().map(cells).collect();
+    let width = |column: usize, heading: &str| {
+        cells.iter().map(|cell| cell[column].chars().count()).chain([heading.len()]).max().unwrap_or(0)
+    };
+    let (time, event) = (width(0, "time"), width(1, "event"));
+    let mut text = format!("{}: {end}\n\n  {:>time$}  {:<event$}  how\n", execution.program, "time", "event");
+    for [at, name, how] in &cells {
+        text.push_str(&format!("  {at:>time$}  {name:<event$}  {how}\n"));
+    }
+    text
+}
+
+fn cells(row: &Row) -> [String; 3] {
+    let time = row.time.map_or("-".to_string(), |time| time.0.to_string());
+    let mut how = row.how.word().to_string();
+    let heard = row.observed.flatten();
+    match (row.how, heard) {
+        (How::Buffered, Some(heard)) => how.push_str(&format!(", heard at {}", heard.0)),
+        (How::Imagined, Some(heard)) => how.push_str(&format!(", heard only at {}", heard.0)),
+        _ => {}
+    }
+    if let Some((low, high)) = row.happened
+        && (low != high || row.time.is_some_and(|time| time != low))
+    {
+        if low == high {
+            how.push_str(&format!(", happened at {}", low.0));
+        } else {
+            how.push_str(&format!(", happened in [{}, {}]", low.0, high.0));
+        }
+    }
+    [time, row.event.clone(), how]
+}

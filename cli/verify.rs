@@ -1,0 +1,99 @@
+//! `kirk verify`: does a recorded execution satisfy every constraint of a file?
+
+use std::io;
+
+use kirk_compiler::{Code, Diagnostic, Source, Span};
+use kirk_runtime::{Execution, verify as check};
+use serde::Serialize;
+
+use crate::args::{Common, Selection, TextOrJson, Verify};
+use crate::input::{load, read};
+use crate::json::line;
+use crate::output::{Status, print, print_line};
+use crate::report::Reporter;
+
+/// Records are written by machines.
+const LARGEST_RECORD: u64 = 256 << 20;
+
+pub(crate) fn verify(arguments: &Verify, common: &Common) -> io::Result<Status> {
+    let execution = match read_execution(&arguments.execution) {
+        Ok(execution) => Some(execution),
+        Err((source, diagnostic)) => {
+            Reporter::new(&[source]).show(&[diagnostic], common)?;
+            None
+        }
+    };
+    let entry = match (&arguments.entry, &execution) {
+        (Some(entry), _) => entry.clone(),
+        (None, Some(execution)) => execution.program.clone(),
+        (None, None) => "main".to_string(),
+    };
+    let selection = Selection { package: arguments.package.clone(), entry };
+    let input = load(&arguments.file, &selection);
+    Reporter::new(&input.sources).show(&input.diagnostics, common)?;
+    let (Some(execution), Some(network)) = (execution, &input.network) else { return Ok(Status::Wrong) };
+    let violations = check(network, &execution);
+    match arguments.format {
+        TextOrJson::Json => {
+            let violations =
+                violations.iter().map(|v| ViolationJson { event: v.event.as_deref(), message: &v.message });
+            let document = VerifyJson {
+                format: "kirk-verify/1",
+                execution: &arguments.execution,
+                file: &arguments.file,
+                verified: violations.len() == 0,
+                violations: violations.collect(),
+            };
+            print(&line(&document)?)?;
+        }
+        TextOrJson::Text => {
+            for violation in &violations {
+                print_line(&format!("violation: {}", violation.message))?;
+            }
+            let verdict = match violations.len() {
+                0 => "satisfies every constraint of".to_string(),
+                1 => "violates, in 1 place,".to_string(),
+                count => format!("violates, in {count} places,"),
+            };
+            if !common.quiet {
+                print_line(&format!("{} {verdict} {}", arguments.execution, arguments.file))?;
+            }
+        }
+    }
+    Ok(if violations.is_empty() { Status::Yes } else { Status::No })
+}
+
+fn read_execution(file: &str) -> Result<Execution, (Source, Diagnostic)> {
+    let bytes = read(file, LARGEST_RECORD).map_err(|message| {
+        (Source::new(file, ""), Diagnostic::error(Code::CannotRead, Span::default(), message))
+    })?;
+    let text = String::from_utf8_lossy(&bytes).into_owned();
+    serde_json::from_str(&text).map_err(|error| {
+        let before: usize =
+            text.split_inclusive('\n').take(error.line().saturating_sub(1)).map(str::len).sum();
+        let mut at = (before + error.column().saturating_sub(1)).min(text.len());
+        while !text.is_char_boundary(at) {
+            at -= 1;
+        }
+        let message = error.to_string();
+        let message = message.rfind(" at line ").map_or(message.as_str(), |end| &message[..end]).to_string();
+        let diagnostic = Diagnostic::error(Code::BadRecord, Span::new(0, at, at), message)
+            .help("kirk run --format json writes such a record");
+        (Source::new(file, text.as_str()), diagnostic)
+    })
+}
+
+#[derive(Serialize)]
+struct VerifyJson<'a> {
+    format: &'static str,
+    execution: &'a str,
+    file: &'a str,
+    verified: bool,
+    violations: Vec<ViolationJson<'a>>,
+}
+
+#[derive(Serialize)]
+struct ViolationJson<'a> {
+    event: Option<&'a str>,
+    message: &'a str,
+}

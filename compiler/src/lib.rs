@@ -43,7 +43,7 @@
 //! - An **episode** is one occurrence of a program or of a body form, from its start event to its end event.
 //! - The **origin** of a constraint is the place and the sentence it comes from. (The origin of a network, an event, is
 //!   another thing: the start of the entry program.)
-//! - A **diagnostic** has a stable [`Code`], a page for which [`explain`] gives, and places in the sources.
+//! - A **diagnostic** has a stable [`Code`], a page for which [`explain`](fn@explain) gives, and places in the sources.
 //!
 //! # Invariants
 //!

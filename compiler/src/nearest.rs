@@ -20,7 +20,7 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         }
         let limit = best.map_or(word.len().max(candidate.len()) / 3 + 1, |(distance, _)| distance);
         let length = candidate.chars().count();
-        if length.abs_diff(word.len()) >= limit + 1 || length > 64 {
+        if length.abs_diff(word.len()) > limit || length > 64 {
             continue;
         }
         let distance = distance(&word, &candidate.chars().collect::<Vec<_>>());

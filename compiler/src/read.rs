@@ -18,11 +18,21 @@ use token::{Kind, Token, Tokens};
 /// How deep forms may be nested.
 pub const MAX_NESTING: usize = 1_000;
 
+/// How long a source may be, in bytes: several times what the largest program that can be unfolded needs.
+pub const MAX_LENGTH: usize = 16 << 20;
+
 /// Reads the top-level forms of source number `index`.
 pub fn read(source: &Source, index: u32, problems: &mut Problems) -> Vec<Form> {
-    if u32::try_from(source.text.len()).is_err() {
-        let message = "this source is longer than 4 GiB";
-        problems.push(Diagnostic::error(Code::TooLong, Span::new(index, 0, 0), message));
+    if source.text.len() > MAX_LENGTH {
+        let at = (MAX_LENGTH..source.text.len()).find(|at| source.text.is_char_boundary(*at));
+        let end = Span::new(index, at.unwrap_or(0), at.unwrap_or(0));
+        let message = format!("this source is longer than {} MiB", MAX_LENGTH >> 20);
+        problems.push(
+            Diagnostic::error(Code::TooLong, end, message)
+                .primary("kirk reads no further than here")
+                .help("Is this the file you meant? No mission that can be executed is that long."),
+        );
+        problems.lose_definitions();
         return Vec::new();
     }
     if let Some(problem) = foreign_text(&source.text, index) {
@@ -213,7 +223,8 @@ impl<'a> Reader<'a> {
             );
         }
         match self.stack.pop() {
-            Some(open) => {
+            Some(mut open) => {
+                open.items.shrink_to_fit();
                 let span = self.span(open.at, token.end);
                 self.finish(Form { span, kind: FormKind::List(open.items) });
             }
@@ -372,7 +383,7 @@ impl<'a> Reader<'a> {
             start == 0 || self.text.as_bytes().get(start - 1) == Some(&b'\n')
         };
         let mut closed_at = None;
-        let spilled = self.forms.iter().rposition(|form| at_line_start(form)).map(|at| at + 1);
+        let spilled = self.forms.iter().rposition(at_line_start).map(|at| at + 1);
         if let Some(from) = spilled {
             // They belong to the definition: given back to it, what they call is in use.
             let lost = self.forms.split_off(from);

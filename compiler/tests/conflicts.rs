@@ -1,4 +1,5 @@
 //! Missions that cannot be executed in every case, and how that is explained: the constraints to blame, in the source.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod common;
 

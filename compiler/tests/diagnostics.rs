@@ -25,13 +25,12 @@ fn every_bad_file_is_told_what_is_wrong_with_it() {
             insta::assert_snapshot!(name, format!("{shown}\n---\n{clipped}"));
         });
     }
-    // These need more than one bad file: a conflict, conditions (in the examples), a source of 4 GiB.
+    // `conflicts.rs` and `robustness.rs` have these: a conflict, and a source too long to keep as a file.
     let elsewhere = [Code::NotControllable, Code::TooLong].map(|code| code.to_string());
-    let missing: Vec<String> = Code::ALL
-        .iter()
-        .map(Code::to_string)
-        .filter(|code| !covered.contains(code) && !elsewhere.contains(code))
-        .collect();
+    // From 7 on, the hundreds are spoken by others: the command line and the network files.
+    let ours = Code::ALL.iter().filter(|code| (**code as u16) < 700).map(Code::to_string);
+    let missing: Vec<String> =
+        ours.filter(|code| !covered.contains(code) && !elsewhere.contains(code)).collect();
     assert!(missing.is_empty(), "no bad file earns {missing:?}");
 }
 

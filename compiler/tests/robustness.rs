@@ -1,5 +1,9 @@
 //! Whatever the text, there is a result: no panic, no exhausted stack, places inside the text, few messages.
-#![allow(clippy::disallowed_methods, reason = "tests measure stacks in threads of their own")]
+#![allow(
+    clippy::disallowed_methods,
+    clippy::unwrap_used,
+    reason = "tests measure stacks in threads of their own"
+)]
 
 mod common;
 
@@ -35,7 +39,6 @@ fn on_a_small_stack(work: impl FnOnce() + Send + 'static) {
 }
 
 #[test]
-#[expect(clippy::string_slice, reason = "only at character boundaries")]
 fn a_mission_cut_anywhere_gives_a_result() {
     for (_, text) in common::sources("examples/rmpl") {
         for cut in (0..text.len()).filter(|cut| text.is_char_boundary(*cut)) {
@@ -115,6 +118,13 @@ fn long_programs_are_compiled_in_linear_time() {
             (0..20_000).map(|n| format!("(define-control-program p{n} () (q{n}))\n")).collect();
         result(&programs);
     });
+}
+
+#[test]
+fn a_source_that_is_too_long_is_not_read() {
+    let compiled = result(&"(ä) ".repeat(5_000_000));
+    let codes: Vec<String> = compiled.diagnostics.iter().map(|d| d.code.to_string()).collect();
+    assert_eq!(codes, ["K0112"]);
 }
 
 #[test]

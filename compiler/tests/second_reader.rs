@@ -1,4 +1,5 @@
 //! lexpr reads the examples as well, knowing nothing of our grammar: both must see the same forms.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod common;
 

@@ -116,9 +116,9 @@ many problems mostly follow from a few: put the first ones right and look again.
 };
 
 pub(super) const TOO_LONG: Page = Page {
-    meaning: "Places in a source are counted with 32 bits, so a source can have at most 4 GiB. Nobody writes that by hand; a
-program that generates missions should generate a network in kirk's JSON form instead, which needs no
-compiling.",
+    meaning: "A source may have 16 MiB, several times what the largest program needs that kirk can unfold. A longer file is
+probably not the one you meant. A program that generates missions can generate a network in kirk's JSON form
+instead, which needs no compiling.",
     wrong: "",
     right: "",
 };

@@ -1,5 +1,11 @@
 //! Plain text forms of what the compiler yields, for snapshots.
-#![allow(dead_code, unreachable_pub, clippy::disallowed_methods, reason = "each test binary uses a part")]
+#![allow(
+    dead_code,
+    unreachable_pub,
+    clippy::disallowed_methods,
+    clippy::unwrap_used,
+    reason = "each test binary uses a part"
+)]
 
 use kirk_compiler::{Compilation, Diagnostic, LineIndex, Options, Origin, Plan, Severity, Source};
 use kirk_network::{Bound, Network};

@@ -28,7 +28,7 @@ pub struct LaneOptions {
 /// A fifth of the tasks contingent, a third of the events tied to other lanes, no delays.
 impl Default for LaneOptions {
     fn default() -> LaneOptions {
-        LaneOptions { links: 20, cross: 33, slack: 60, delay: 0 }
+        LaneOptions { links: 20, cross: 33, slack: 40, delay: 0 }
     }
 }
 

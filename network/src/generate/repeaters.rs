@@ -25,8 +25,9 @@ pub struct RepeaterOptions {
 
 /// The figure, with delays of 3 s on average.
 ///
-/// The thesis gives the density of an exponential distribution of rate 3, and says that longer delays come from a larger
-/// lambda; only with lambda as the average do its tables come out.
+/// The thesis gives the density of an exponential distribution of rate 3, but says that a larger lambda makes longer
+/// delays, and with a rate of 3 they are too short to matter: none of the networks of the seeds 0 to 999 (4 rovers, 5
+/// repeaters) is lost to them, where the thesis loses 619 of 841. With an average of 3 s most are.
 impl Default for RepeaterOptions {
     fn default() -> RepeaterOptions {
         RepeaterOptions {

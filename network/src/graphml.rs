@@ -328,7 +328,7 @@ impl Reader {
             }
             (Some(a), Some(b)) => {
                 let (forward, lower, back, upper) =
-                    if b.upper { (first, a, second, b) } else { (second, b, first, a) };
+                    if b.upper || a.of == first.to { (first, a, second, b) } else { (second, b, first, a) };
                 let contingent = forward.to;
                 let fits = !lower.upper && upper.upper && lower.of == contingent && upper.of == contingent;
                 if !fits {

@@ -10,7 +10,7 @@
 //! assert_eq!(network.unwrap().events().len(), 3);
 //! ```
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 
 use crate::json::ReadProblem;
 use crate::model::{ContingentLink, Delay, Event, EventId, ModelError, Name, Network, Requirement};
@@ -41,7 +41,7 @@ pub fn read(text: &str) -> Result<Network, Vec<ReadProblem>> {
 pub(crate) struct Intervals {
     pub(crate) requirements: Vec<Requirement>,
     /// The requirements without a lower bound, by their events.
-    open: BTreeMap<(EventId, EventId), Vec<usize>>,
+    open: BTreeMap<(EventId, EventId), VecDeque<usize>>,
 }
 
 impl Intervals {
@@ -49,14 +49,14 @@ impl Intervals {
     pub(crate) fn add(&mut self, from: EventId, to: EventId, weight: Duration) {
         let lower = Duration::from_micros(-weight.as_micros());
         if let Some(open) = self.open.get_mut(&(to, from))
-            && let Some(at) = open.iter().position(|&index| {
-                self.requirements[index].upper.finite().is_some_and(|upper| lower <= upper)
-            })
+            && let Some(&first) = open.front()
+            && self.requirements[first].upper.finite().is_some_and(|upper| lower <= upper)
         {
-            self.requirements[open.remove(at)].lower = Bound::Finite(lower);
+            open.pop_front();
+            self.requirements[first].lower = Bound::Finite(lower);
             return;
         }
-        self.open.entry((from, to)).or_default().push(self.requirements.len());
+        self.open.entry((from, to)).or_default().push_back(self.requirements.len());
         self.requirements.push(Requirement {
             from,
             to,

@@ -30,6 +30,19 @@ pub(super) struct Element {
     pub(super) data: Vec<Data>,
 }
 
+/// The data of nodes and edges that can matter.
+const KEYS: [&str; 9] = [
+    "Names",
+    "Obs",
+    "Label",
+    "Type",
+    "Value",
+    "LabeledValue",
+    "LabeledValues",
+    "UpperCaseLabeledValues",
+    "LowerCaseLabeledValues",
+];
+
 /// The text of a `<data key="..">`, and where it begins.
 #[derive(Default)]
 pub(super) struct Data {
@@ -54,7 +67,7 @@ impl Element {
     }
 }
 
-/// Reads the XML up to its end or the first place that is not XML. `None` if there is no graph in it.
+/// Reads the XML. `None` if there is no graph in it, or not all of it: half a graph is full of nodes that do not exist.
 pub(super) fn scan(text: &str) -> (Option<Document>, Vec<ReadProblem>) {
     let body = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut scanner = Scanner {
@@ -67,8 +80,8 @@ pub(super) fn scan(text: &str) -> (Option<Document>, Vec<ReadProblem>) {
         seen_graph: false,
         problems: Vec::new(),
     };
-    scanner.run(body);
-    (scanner.seen_graph.then_some(scanner.document), scanner.problems)
+    let whole = scanner.run(body);
+    ((whole && scanner.seen_graph).then_some(scanner.document), scanner.problems)
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -103,7 +116,8 @@ struct Scanner {
 }
 
 impl Scanner {
-    fn run(&mut self, body: &str) {
+    /// True if it has reached the end of the graph.
+    fn run(&mut self, body: &str) -> bool {
         let mut reader = Reader::from_str(body);
         loop {
             let offset = self.start + reader.buffer_position() as usize;
@@ -112,18 +126,18 @@ impl Scanner {
                 Err(error) => {
                     let at = self.start + reader.error_position() as usize;
                     self.problem(at, format!("this is not XML: {error}"));
-                    return;
+                    return false;
                 }
             };
             match event {
                 Event::Start(tag) => {
                     if !self.open(&tag, offset, self.start + reader.buffer_position() as usize) {
-                        return;
+                        return false;
                     }
                 }
                 Event::Empty(tag) => {
                     if !self.open(&tag, offset, offset) {
-                        return;
+                        return false;
                     }
                     self.close();
                 }
@@ -156,6 +170,7 @@ impl Scanner {
         } else if !self.seen_graph {
             self.problem(self.start + body.len(), "there is no `<graph>` in `<graphml>`".to_string());
         }
+        self.stack.is_empty()
     }
 
     /// Enters an element; false if there is no point in reading on.
@@ -163,13 +178,16 @@ impl Scanner {
         let name = tag.local_name();
         let name: &str = name.as_ref();
         let mut attributes = BTreeMap::new();
-        for attribute in tag.attributes() {
+        // Its own search for duplicates compares each with each.
+        for attribute in tag.attributes().with_checks(false) {
             match attribute {
                 Ok(attribute) => {
                     let key = attribute.key.as_ref().to_string();
                     match attribute.normalized_value(XmlVersion::Implicit1_0) {
                         Ok(value) => {
-                            attributes.insert(key, value.into_owned());
+                            if attributes.insert(key.clone(), value.into_owned()).is_some() {
+                                self.problem(offset, format!("`<{name}>`: it has `{key}` twice"));
+                            }
                         }
                         Err(error) => {
                             self.problem(offset, format!("`<{name}>`: its `{key}` cannot be read: {error}"));
@@ -265,12 +283,12 @@ impl Scanner {
                     Tag::Node => (&mut self.document.nodes, "node"),
                     _ => (&mut self.document.edges, "edge"),
                 };
-                let Some(element) = elements.last_mut() else { return };
+                let Some(element) = elements.last_mut().filter(|_| KEYS.contains(&data.key.as_str())) else {
+                    return;
+                };
                 if element.data.iter().any(|known| known.key == data.key) {
                     let message = format!("{}: it has `{}` twice", element.describe(what), data.key);
-                    let offset = data.offset;
-                    element.data.push(data);
-                    self.problem(offset, message);
+                    self.problem(data.offset, message);
                 } else {
                     element.data.push(data);
                 }

@@ -8,8 +8,9 @@ use quick_xml::escape::escape;
 use crate::model::{Delay, EventId, Network};
 use crate::time::Duration;
 
-/// Writes a network without delays; it reads back equal, but for the requirements between the same two events, which
-/// become one, and for those without any bound, which say nothing.
+/// Writes a network without delays. It reads back equal, except that several requirements between the same two events
+/// become one, that one with only a lower bound is turned round, that one without any bound is left out, and that links
+/// between events that also have a requirement may change places. Every name counts as a user's.
 ///
 /// # Errors
 /// Everything about the network that the format cannot say.

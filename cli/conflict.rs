@@ -11,7 +11,7 @@ use crate::report::{Reporter, SpanJson};
 /// The diagnostic of a "no": in the source if there is one, else in terms of the network file.
 pub(crate) fn diagnostic(conflict: &Conflict, network: &Network, input: &Input) -> Diagnostic {
     match &input.origins {
-        Some(origins) => explain_conflict(conflict, network, origins, Span::default()),
+        Some((origins, program)) => explain_conflict(conflict, network, origins, *program),
         None => {
             let missing = kirk_network::Duration::from_micros(-conflict.total.as_micros());
             let message = format!(
@@ -109,7 +109,7 @@ pub(crate) fn to_json(
                 Part::AfterOrigin => ("after-origin", None, None),
                 Part::Join(index) => ("join", requirement_ends(network, index), Some(index)),
             };
-            let origin = input.origins.as_ref().and_then(|origins| match share.part {
+            let origin = input.origins.as_ref().and_then(|(origins, _)| match share.part {
                 Part::RequirementUpper(index) | Part::RequirementLower(index) | Part::Join(index) => {
                     origins.requirements.get(index)
                 }

@@ -19,8 +19,8 @@ pub(crate) struct Input {
     pub(crate) compilation: Option<Compilation>,
     /// The network, not merged; `None` if there was an error.
     pub(crate) network: Option<Network>,
-    /// Where its constraints come from, if it is RMPL.
-    pub(crate) origins: Option<Origins>,
+    /// Where its constraints come from and where its program is named, if it is RMPL.
+    pub(crate) origins: Option<(Origins, Span)>,
 }
 
 /// RMPL of more bytes than this is no program a person wrote.
@@ -117,7 +117,7 @@ fn program(name: &str, text: String, selection: &Selection) -> Input {
     let mut compilation = compile(&sources, &options);
     let diagnostics = std::mem::take(&mut compilation.diagnostics);
     let (network, origins) = match compilation.plan.take() {
-        Some(plan) => (Some(plan.network), Some(plan.origins)),
+        Some(plan) => (Some(plan.network), Some((plan.origins, plan.entry))),
         None => (None, None),
     };
     Input { sources, diagnostics, compilation: Some(compilation), network, origins }

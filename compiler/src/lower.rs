@@ -79,9 +79,13 @@ struct Lowering {
 type Ends = (EventId, EventId);
 
 impl Lowering {
-    /// Adds an episode with all its parts; returns its start and its end.
+    /// Adds an episode with all its parts; returns its start and its end. Events are numbered in the order in which they
+    /// can happen: the start, the parts, the end.
     fn episode(&mut self, episode: &Episode) -> Ends {
-        let ends = (self.event(episode, "start"), self.event(episode, "end"));
+        let start = self.event(episode, "start");
+        let parts: Vec<(&Episode, Ends)> =
+            episode.parts.iter().map(|part| (part, self.episode(part))).collect();
+        let ends = (start, self.event(episode, "end"));
         if let Some(interval) = &episode.duration {
             self.duration(episode, interval, ends);
         }
@@ -90,8 +94,7 @@ impl Lowering {
         match episode.kind {
             Kind::Primitive => {}
             Kind::Parallel => {
-                for part in &episode.parts {
-                    let (start, end) = self.episode(part);
+                for &(part, (start, end)) in &parts {
                     let inner = described(part);
                     let (kind, starts, stops) = if slack {
                         (
@@ -114,8 +117,7 @@ impl Lowering {
                 let kind = if slack { OriginKind::Order } else { OriginKind::Join };
                 let mut last = ends.0;
                 let mut before: Option<String> = None;
-                for part in &episode.parts {
-                    let (start, end) = self.episode(part);
+                for &(part, (start, end)) in &parts {
                     let inner = described(part);
                     let text = match (&before, slack) {
                         (None, true) => format!("{inner} starts after {subject} starts"),

@@ -35,7 +35,8 @@ pub fn read(text: &str) -> Result<Network, Vec<ReadProblem>> {
     }
 }
 
-/// Writes a network as one line of JSON that reads back equal (except that every name counts as a user's).
+/// Writes a network as one line of JSON that reads back equal, except for the names no user wrote: the file has them
+/// only for events that have no other.
 pub fn write(network: &Network) -> String {
     serde_json::to_string(&Document(network))
         .unwrap_or_else(|error| unreachable!("a network has only strings and numbers: {error}"))
@@ -311,7 +312,7 @@ impl Serialize for Document<'_> {
         map.serialize_entry("format", FORMAT)?;
         map.serialize_entry("name", network.name())?;
         map.serialize_entry("time_unit", "s")?;
-        map.serialize_entry("origin", network.id(network.origin()))?;
+        map.serialize_entry("origin", network.label(network.origin()))?;
         map.serialize_entry("events", &List(network.events(), |event| EventDocument(event)))?;
         let requirement = |requirement| RequirementDocument { network, requirement };
         map.serialize_entry("requirements", &List(network.requirements(), requirement))?;
@@ -407,7 +408,11 @@ struct EventDocument<'a>(&'a Event);
 
 impl Serialize for EventDocument<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let names: Vec<&str> = self.0.names.iter().map(|name| name.text.as_str()).collect();
+        // A network file has no internal names: of an event that has others they are left out.
+        let written: Vec<&str> =
+            self.0.names.iter().filter(|name| !name.internal).map(|name| name.text.as_str()).collect();
+        let all = self.0.names.iter().map(|name| name.text.as_str());
+        let names = if written.is_empty() { all.collect() } else { written };
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("id", names[0])?;
         if names.len() > 1 {
@@ -425,8 +430,8 @@ struct RequirementDocument<'a> {
 impl Serialize for RequirementDocument<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
-        map.serialize_entry("from", self.network.id(self.requirement.from))?;
-        map.serialize_entry("to", self.network.id(self.requirement.to))?;
+        map.serialize_entry("from", self.network.label(self.requirement.from))?;
+        map.serialize_entry("to", self.network.label(self.requirement.to))?;
         if let Bound::Finite(lower) = self.requirement.lower {
             map.serialize_entry("lower", &Seconds(lower))?;
         }
@@ -445,8 +450,8 @@ struct LinkDocument<'a> {
 impl Serialize for LinkDocument<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
-        map.serialize_entry("from", self.network.id(self.link.from))?;
-        map.serialize_entry("to", self.network.id(self.link.to))?;
+        map.serialize_entry("from", self.network.label(self.link.from))?;
+        map.serialize_entry("to", self.network.label(self.link.to))?;
         map.serialize_entry("lower", &Seconds(self.link.lower))?;
         map.serialize_entry("upper", &Seconds(self.link.upper))?;
         if self.link.delay != Delay::NONE {

@@ -20,6 +20,7 @@ mod scan;
 mod write;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Display;
 
 use crate::json::ReadProblem;
 use crate::model::{ContingentLink, Delay, Event, EventId, Name, Network};
@@ -358,7 +359,12 @@ impl Reader {
         }
     }
 
-    fn case_label(&mut self, name: &str, data: &Data, ids: &BTreeMap<&str, EventId>) -> Option<CaseLabel> {
+    fn case_label(
+        &mut self,
+        name: &dyn Display,
+        data: &Data,
+        ids: &BTreeMap<&str, EventId>,
+    ) -> Option<CaseLabel> {
         let text = data.text.trim();
         let upper = text.starts_with("UC(");
         let parts = text.strip_prefix(if upper { "UC(" } else { "LC(" }).and_then(|t| t.rsplit_once("):"));
@@ -375,7 +381,7 @@ impl Reader {
         Some(CaseLabel { upper, of: of?, value: value? })
     }
 
-    fn seconds(&mut self, name: &str, data: &Data, text: &str) -> Option<Duration> {
+    fn seconds(&mut self, name: &dyn Display, data: &Data, text: &str) -> Option<Duration> {
         Duration::parse_seconds(text)
             .map_err(|error| self.problem(data.offset, format!("{name}: the value `{text}`: {error}")))
             .ok()

@@ -1,6 +1,8 @@
 //! GraphML of the CSTNU Tool and plain text: the samples read as their JSON does, what is written reads back equal, and
 //! broken files get messages that name the place.
 
+#![allow(clippy::unwrap_used, clippy::disallowed_methods, reason = "a test may fail, and reads its samples")]
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;

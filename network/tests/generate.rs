@@ -1,5 +1,7 @@
 //! Generated networks are the same every time, keep to their distributions, and are not all alike.
 
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
+
 use kirk_network::generate::{
     Exponential, GenerateError, Lambda, LaneOptions, Link, MOST_EVENTS, RepeaterOptions, SamplingOptions,
     controllable, lanes, repeaters, sampling,

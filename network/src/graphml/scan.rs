@@ -1,6 +1,7 @@
 //! From XML to nodes, edges and their data, each with its place in the text. No meaning yet.
 
 use std::collections::BTreeMap;
+use std::fmt;
 
 use quick_xml::XmlVersion;
 use quick_xml::escape::resolve_predefined_entity;
@@ -53,17 +54,26 @@ pub(super) struct Data {
 
 impl Element {
     /// How a message names it: by its id, else by its ends.
-    pub(super) fn describe(&self, what: &str) -> String {
-        let end = |id: &Option<String>| id.clone().unwrap_or("?".to_string());
-        match &self.id {
-            Some(id) => format!("{what} `{id}`"),
-            None => format!("{what} `{}` -> `{}`", end(&self.source), end(&self.target)),
-        }
+    pub(super) fn describe<'e>(&'e self, what: &'static str) -> impl fmt::Display + 'e {
+        Description(self, what)
     }
 
     /// True if there is anything at all under this key.
     pub(super) fn says(&self, key: &str) -> bool {
         self.data.iter().any(|data| data.key == key && !data.text.trim().is_empty())
+    }
+}
+
+struct Description<'e>(&'e Element, &'static str);
+
+impl fmt::Display for Description<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Description(element, what) = self;
+        let end = |id: &Option<String>| id.clone().unwrap_or("?".to_string());
+        match &element.id {
+            Some(id) => write!(f, "{what} `{id}`"),
+            None => write!(f, "{what} `{}` -> `{}`", end(&element.source), end(&element.target)),
+        }
     }
 }
 
@@ -82,6 +92,31 @@ pub(super) fn scan(text: &str) -> (Option<Document>, Vec<ReadProblem>) {
     };
     let whole = scanner.run(body);
     ((whole && scanner.seen_graph).then_some(scanner.document), scanner.problems)
+}
+
+/// The attributes that can matter.
+#[derive(Default)]
+struct Attributes {
+    id: Option<String>,
+    source: Option<String>,
+    target: Option<String>,
+    key: Option<String>,
+    of: Option<String>,
+    name: Option<String>,
+}
+
+impl Attributes {
+    fn slot(&mut self, key: &str) -> Option<&mut Option<String>> {
+        match key {
+            "id" => Some(&mut self.id),
+            "source" => Some(&mut self.source),
+            "target" => Some(&mut self.target),
+            "key" => Some(&mut self.key),
+            "for" => Some(&mut self.of),
+            "attr.name" => Some(&mut self.name),
+            _ => None,
+        }
+    }
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -177,26 +212,27 @@ impl Scanner {
     fn open(&mut self, tag: &BytesStart<'_>, offset: usize, inside: usize) -> bool {
         let name = tag.local_name();
         let name: &str = name.as_ref();
-        let mut attributes = BTreeMap::new();
+        let mut attributes = Attributes::default();
         // Its own search for duplicates compares each with each.
         for attribute in tag.attributes().with_checks(false) {
-            match attribute {
+            let (key, value) = match &attribute {
                 Ok(attribute) => {
-                    let key = attribute.key.as_ref().to_string();
-                    match attribute.normalized_value(XmlVersion::Implicit1_0) {
-                        Ok(value) => {
-                            if attributes.insert(key.clone(), value.into_owned()).is_some() {
-                                self.problem(offset, format!("`<{name}>`: it has `{key}` twice"));
-                            }
-                        }
-                        Err(error) => {
-                            self.problem(offset, format!("`<{name}>`: its `{key}` cannot be read: {error}"));
-                        }
-                    }
+                    (attribute.key.as_ref(), attribute.normalized_value(XmlVersion::Implicit1_0))
                 }
                 Err(error) => {
                     self.problem(offset, format!("`<{name}>`: its attributes cannot be read: {error}"));
                     break;
+                }
+            };
+            match (attributes.slot(key), value) {
+                (Some(slot), Ok(value)) => {
+                    if slot.replace(value.into_owned()).is_some() {
+                        self.problem(offset, format!("`<{name}>`: it has `{key}` twice"));
+                    }
+                }
+                (None, Ok(_)) => {}
+                (_, Err(error)) => {
+                    self.problem(offset, format!("`<{name}>`: its `{key}` cannot be read: {error}"));
                 }
             }
         }
@@ -219,9 +255,9 @@ impl Scanner {
                 Tag::Graph
             }
             (Some(Tag::Graphml), "key") => {
-                let id = attributes.remove("id").unwrap_or_default();
-                let name = attributes.remove("attr.name").unwrap_or_else(|| id.clone());
-                let of_edges = attributes.get("for").is_some_and(|of| of == "edge");
+                let id = attributes.id.unwrap_or_default();
+                let name = attributes.name.unwrap_or_else(|| id.clone());
+                let of_edges = attributes.of.is_some_and(|of| of == "edge");
                 self.data = Data { key: id.clone(), ..Data::default() };
                 self.keys.insert(id, Key { name, of_edges });
                 Tag::Key
@@ -231,12 +267,11 @@ impl Scanner {
                 Tag::Default
             }
             (Some(Tag::Graph), "node" | "edge") => {
-                let mut attribute = |key: &str| attributes.remove(key);
                 let element = Element {
                     offset,
-                    id: attribute("id"),
-                    source: attribute("source"),
-                    target: attribute("target"),
+                    id: attributes.id,
+                    source: attributes.source,
+                    target: attributes.target,
                     data: Vec::new(),
                 };
                 if name == "node" {
@@ -248,7 +283,7 @@ impl Scanner {
                 }
             }
             (Some(Tag::Graph | Tag::Node | Tag::Edge), "data") => {
-                let id = attributes.remove("key").unwrap_or_default();
+                let id = attributes.key.unwrap_or_default();
                 let key = self.keys.get(&id).map_or(id, |key| key.name.clone());
                 self.data = Data { key, text: String::new(), offset: inside };
                 Tag::Data

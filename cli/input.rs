@@ -26,7 +26,7 @@ pub(crate) struct Input {
 /// RMPL of more bytes than this is no program a person wrote.
 const LARGEST_PROGRAM: u64 = 16 << 20;
 /// Networks are written by machines.
-const LARGEST_NETWORK: u64 = 256 << 20;
+const LARGEST_NETWORK: u64 = 64 << 20;
 
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {

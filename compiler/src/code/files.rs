@@ -4,7 +4,7 @@ use super::Page;
 
 pub(super) const CANNOT_READ: Page = Page {
     meaning: "The file could not be read: it is not there, it may not be read, it is a directory, or it is larger than anything
-kirk reads (16 MiB of RMPL, 256 MiB of network). `-` stands for standard input. Nothing was compiled and nothing executed.",
+kirk reads (16 MiB of RMPL, 64 MiB of network). `-` stands for standard input. Nothing was compiled and nothing executed.",
     wrong: "",
     right: "",
 };

@@ -1,0 +1,284 @@
+//! The promises of the command line: exit statuses, formats, and a message for every kind of wrong input.
+
+mod binary;
+
+use std::fs;
+use std::path::Path;
+
+use binary::{kirk, kirk_with_input, stderr, stdout};
+use serde_json::Value;
+
+/// Wrong input: exit status 2, a message, and nothing that looks like a crash.
+fn is_refused(arguments: &[&str], input: &[u8], words: &str) -> String {
+    let output = kirk_with_input(arguments, input);
+    let message = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+    assert!(message.contains(words), "{arguments:?} does not say {words:?}: {message}");
+    assert!(!message.contains("panicked"), "{arguments:?}: {message}");
+    assert!(message.len() < 200_000, "{arguments:?}: {} bytes of messages", message.len());
+    message
+}
+
+#[test]
+fn wrong_input_of_every_kind_gets_a_message_and_status_2() {
+    let cases: &[(&[u8], &str)] = &[
+        (b"", "K0109"),
+        (b"   ; only a comment\n", "K0109"),
+        (b"\x7fELF\x02\x01\x01\x00\x00\x00\xff\xfe", "K0106"),
+        (b"\xff\xfe\x00a", "K0106"),
+        (b"let x = 5;\n", "K0108"),
+        (b"$ kirk run mission.rmpl\n", "K0108"),
+        (b"<html><body>hello</body></html>", "K0108"),
+        (b"(define-control-program main () (sequence (a) (b)", "K0101"),
+        (b"(define-control-program main () (nothing))", "K0301"),
+        (b"(((((", "K0101"),
+        (b")", "K0102"),
+        (b"{\"format\":\"kirk-network/1\"", "K0702"),
+        (b"{\"a\": 1}", "K0702"),
+    ];
+    for (input, code) in cases {
+        for command in [&["check", "-"][..], &["run", "-", "--simulate"], &["compile", "-"]] {
+            is_refused(command, input, code);
+        }
+    }
+}
+
+#[test]
+fn wrong_files_get_a_message_and_status_2() {
+    is_refused(&["check", "examples"], b"", "directory");
+    is_refused(&["check", "no/such/file.rmpl"], b"", "no such file");
+    is_refused(&["run", "no/such/file.rmpl", "--simulate"], b"", "no such file");
+    is_refused(&["verify", "examples/rmpl/robot.rmpl", "examples/rmpl/robot.rmpl"], b"", "K0803");
+    is_refused(&["verify", "no/such/file.json", "examples/rmpl/robot.rmpl"], b"", "no such file");
+    is_refused(&["explain", "K9999"], b"", "K9999");
+    is_refused(&["run", "examples/rmpl/robot.rmpl"], b"", "--simulate");
+    is_refused(&["check"], b"", "FILE");
+    is_refused(&["fly"], b"", "fly");
+    is_refused(&["run", "--simulate", "examples/rmpl/robot.rmpl", "--strategy", "hope"], b"", "hope");
+    is_refused(&["compile", "examples/rmpl/robot.rmpl", "--emit", "ast", "--format", "dot"], b"", "ast");
+    is_refused(&["compile", "tests/networks/lane50_dc_000.json", "--emit", "ast"], b"", "network");
+}
+
+#[test]
+fn hostile_input_ends_in_bounded_time_and_memory() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        fs::write(&path, bytes).unwrap();
+        path.to_str().unwrap().to_string()
+    };
+    is_refused(&["check", &write("large.rmpl", &vec![b'('; 100 << 20])], b"", "bytes");
+    is_refused(&["check", &write("large.json", &vec![b'['; 100 << 20])], b"", "K070");
+    is_refused(&["check", &write("deep.rmpl", &"(".repeat(100_000).into_bytes())], b"", "K01");
+    let closed = ["(".repeat(100_000), ")".repeat(100_000)].concat();
+    is_refused(&["check", &write("closed.rmpl", closed.as_bytes())], b"", "K0105");
+    is_refused(&["check", &write("deep.json", &"[".repeat(100_000).into_bytes())], b"", "K0702");
+    is_refused(&["check", &write("quotes.rmpl", &vec![b'"'; 100_000])], b"", "K0");
+    is_refused(&["check", &write("hashes.rmpl", &b"#|".repeat(50_000))], b"", "K0104");
+    is_refused(&["check", &write("one-line.rmpl", &b"a ".repeat(100_000))], b"", "K0110");
+}
+
+#[test]
+fn a_mission_cut_anywhere_is_refused_or_accepted_but_never_crashes() {
+    let text = fs::read("examples/rmpl/robot.rmpl").unwrap();
+    for end in (0..text.len()).step_by(97) {
+        let output = kirk_with_input(&["check", "-"], &text[..end]);
+        assert_eq!(output.status.code(), Some(2), "cut at {end}: {}", stderr(&output));
+    }
+}
+
+#[test]
+fn all_problems_of_a_network_file_are_reported_with_their_places() {
+    let network = r#"{
+  "format": "kirk-network/1", "origin": "z",
+  "events": ["z", "x", "x", {"id": "c", "nmes": []}],
+  "requirements": [
+    {"from": "z", "to": "xx", "lower": 0},
+    {"from": "z", "to": "x", "lower": 0.0000001},
+    {"from": "z", "to": "x", "weight": 3}
+  ],
+  "contingents": [{"from": "z", "to": "x", "lower": 5}]
+}"#;
+    let message = is_refused(&["check", "-"], network.as_bytes(), "K0702");
+    insta::assert_snapshot!(message);
+}
+
+#[test]
+fn impossible_observations_are_refused_one_and_all() {
+    let refused = |observations: &[&str], words: &str| {
+        let mut arguments = vec!["run", "examples/rmpl/robot.rmpl", "--simulate", "--quiet"];
+        for observation in observations {
+            arguments.extend(["--observe", *observation]);
+        }
+        is_refused(&arguments, b"", words)
+    };
+    refused(&["human-downlink-science:end@19"], "too early");
+    refused(&["human-downlink-science:end@46"], "too late");
+    refused(&["robot-drilling:end@600"], "too late");
+    refused(&["main:start@0"], "kirk dispatches it");
+    refused(&["robot-driling:end@60"], "did you mean `robot-drilling:end`?");
+    refused(&["robot-drilling:end"], "EVENT@T");
+    refused(&["robot-drilling:end@soon"], "not a number");
+    refused(&["robot-drilling:end@-5"], "before the mission starts");
+    refused(&["robot-drilling:end@60", "robot-poweroff:start@61"], "twice");
+    let two = refused(&["nothing:end@1", "nobody:end@2"], "nothing:end");
+    assert!(two.contains("nobody:end"), "{two}");
+}
+
+#[test]
+fn observations_come_from_a_file_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("observations.json");
+    fs::write(&file, r#"{"human-downlink-science:end": 22, "+ROBOT-DRILLING::END+": 46.0}"#).unwrap();
+    let file = file.to_str().unwrap();
+    let output = kirk(&["run", "examples/rmpl/robot.rmpl", "--simulate", "--observations", file, "--quiet"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stdout(&output).starts_with("main: completed in 56 s"), "{}", stdout(&output));
+    fs::write(file, r#"{"human-downlink-science:end": "soon"}"#).unwrap();
+    is_refused(&["run", "examples/rmpl/robot.rmpl", "--simulate", "--observations", file], b"", "K0801");
+}
+
+#[test]
+fn json_goes_to_standard_output_alone_one_document_per_file() {
+    let files = [
+        "examples/rmpl/robot.rmpl",
+        "no/such/file.rmpl",
+        "examples/rmpl/too-late.rmpl",
+        "tests/networks/lane50_notDC_000.json",
+    ];
+    let mut arguments = vec!["check", "--format", "json"];
+    arguments.extend(files);
+    let output = kirk(&arguments);
+    assert_eq!(output.status.code(), Some(2), "the worst of all counts");
+    assert_eq!(stderr(&output), "");
+    let documents: Vec<Value> =
+        stdout(&output).lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert_eq!(documents.len(), files.len());
+    let verdicts: Vec<&Value> = documents.iter().map(|document| &document["controllable"]).collect();
+    assert_eq!(verdicts, [&Value::Bool(true), &Value::Null, &Value::Bool(false), &Value::Bool(false)]);
+    for (document, file) in documents.iter().zip(files) {
+        assert_eq!(document["format"], "kirk-check/1");
+        assert_eq!(document["file"], file);
+        assert_eq!(document["kind"], "variable-delay");
+    }
+    assert_eq!(documents[0]["events"], 5);
+    assert_eq!(documents[0]["contingents"], 2);
+    assert_eq!(documents[0]["diagnostics"][0]["severity"], "note");
+    assert_eq!(documents[1]["diagnostics"][0]["code"], "K0701");
+    let said = documents[2]["diagnostics"].as_array().unwrap();
+    let conflict = said.iter().find(|diagnostic| diagnostic["code"] == "K0601").unwrap();
+    assert!(conflict["span"]["start"]["line"].as_u64() > Some(1), "{conflict}");
+    let amounts =
+        documents[3]["conflict"].as_array().unwrap().iter().map(|member| member["amount"].as_f64().unwrap());
+    assert!(amounts.sum::<f64>() < 0.0);
+}
+
+#[test]
+fn a_compiled_network_is_input_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("robot.json");
+    let file = file.to_str().unwrap();
+    let compiled = kirk(&["compile", "examples/rmpl/robot.rmpl", "--format", "json", "-o", file, "--quiet"]);
+    assert_eq!((compiled.status.code(), stdout(&compiled)), (Some(0), String::new()));
+    let again = kirk(&["compile", file, "--format", "json"]);
+    assert_eq!(stdout(&again), fs::read_to_string(file).unwrap());
+    let run = kirk(&["run", file, "--simulate", "--observe", "human-downlink-science:end@22"]);
+    assert!(stdout(&run).contains("22  sync:end"), "{}", stdout(&run));
+}
+
+#[test]
+fn every_stage_has_its_formats() {
+    for stage in ["ast", "episodes", "stnu", "reduced", "dispatchable"] {
+        for format in ["text", "json", "sexpr", "dot", "graphml"] {
+            let arguments =
+                ["compile", "examples/rmpl/robot.rmpl", "--quiet", "--emit", stage, "--format", format];
+            let output = kirk(&arguments);
+            let text = stdout(&output);
+            let expected = match (stage, format) {
+                ("ast" | "episodes", "dot" | "graphml") | ("dispatchable", "graphml") => 2,
+                // The delays of the robot cannot be said there.
+                ("stnu", "graphml") => 2,
+                _ => 0,
+            };
+            assert_eq!(output.status.code(), Some(expected), "{arguments:?}: {}", stderr(&output));
+            match (expected, format) {
+                (0, "json") => assert!(serde_json::from_str::<Value>(&text).is_ok(), "{text}"),
+                (0, "sexpr") => assert!(text.starts_with('('), "{text}"),
+                (0, "dot") => assert!(text.starts_with("digraph"), "{text}"),
+                (0, "graphml") => assert!(text.starts_with("<?xml"), "{text}"),
+                (0, _) => assert!(!text.is_empty()),
+                _ => assert_eq!(text, "", "nothing is printed beside an error"),
+            }
+        }
+    }
+}
+
+#[test]
+fn verify_finds_what_was_changed_in_a_record() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("execution.json");
+    let run = kirk(&["run", "examples/rmpl/robot.rmpl", "--simulate", "--format", "json"]);
+    let original: Value = serde_json::from_str(&stdout(&run)).unwrap();
+    let verify = |record: &Value| {
+        fs::write(&path, record.to_string()).unwrap();
+        let output = kirk(&["verify", path.to_str().unwrap(), "examples/rmpl/robot.rmpl", "--quiet"]);
+        (output.status.code(), stdout(&output))
+    };
+    assert_eq!(verify(&original), (Some(0), String::new()));
+    let row_of = |record: &Value, event: &str| {
+        record["rows"].as_array().unwrap().iter().position(|row| row["event"] == event).unwrap()
+    };
+    let mut late = original.clone();
+    let row = row_of(&late, "robot-poweroff:end");
+    late["rows"][row]["time"] = 500.into();
+    late["rows"][row]["true"] = 500.into();
+    let main = row_of(&late, "main:end");
+    late["rows"][main] = late["rows"][row].clone();
+    late["rows"][main]["event"] = "main:end".into();
+    let (status, said) = verify(&late);
+    assert_eq!(status, Some(1));
+    assert!(said.contains("at most 480 s after `main:start`"), "{said}");
+    let mut missing = original.clone();
+    let row = row_of(&missing, "sync:end");
+    missing["rows"].as_array_mut().unwrap().remove(row);
+    assert!(verify(&missing).1.contains("`sync:end` has no row"));
+    let mut apart = original.clone();
+    let row = row_of(&apart, "sync:end");
+    apart["rows"][row]["time"] = 36.into();
+    assert!(verify(&apart).1.contains("one event"));
+    let mut impossible = original.clone();
+    for event in ["human-downlink-science:end", "sync:start"] {
+        let row = row_of(&impossible, event);
+        impossible["rows"][row]["true"] = 31.into();
+    }
+    assert!(verify(&impossible).1.contains("outside of its bounds [15, 30]"));
+}
+
+#[test]
+fn help_and_version_are_not_errors() {
+    for arguments in [&["--help"][..], &["--version"], &["run", "--help"], &["check", "--help"]] {
+        assert_eq!(kirk(arguments).status.code(), Some(0), "{arguments:?}");
+    }
+    let page = kirk(&["explain", "k0601"]);
+    assert_eq!(page.status.code(), Some(0));
+    assert!(stdout(&page).starts_with("K0601"));
+}
+
+#[test]
+fn the_benchmark_networks_are_checked_in_one_command() {
+    let table = fs::read_to_string("tests/networks/verdicts.tsv").unwrap();
+    let files: Vec<String> = table
+        .lines()
+        .skip(1)
+        .map(|line| format!("tests/networks/{}", line.split('\t').next().unwrap()))
+        .collect();
+    assert!(files.iter().all(|file| Path::new(file).exists()));
+    let mut arguments = vec!["check", "--format", "json"];
+    arguments.extend(files.iter().map(String::as_str));
+    let output = kirk(&arguments);
+    assert_eq!(output.status.code(), Some(1), "some are not controllable");
+    for (line, known) in stdout(&output).lines().zip(table.lines().skip(1)) {
+        let document: Value = serde_json::from_str(line).unwrap();
+        assert_eq!(document["controllable"], known.split('\t').nth(1) == Some("dc"), "{known}");
+    }
+}

@@ -11,12 +11,11 @@ use crate::model::{Delay, Network};
 use crate::stnu::NONE;
 use crate::time::{Bound, Duration};
 
-/// Draws a delay STNU: events with all their names, requirements, contingent links with their delays.
+/// Draws a delay STNU: events with the names users wrote, requirements, contingent links with their delays.
 pub fn network(network: &Network) -> String {
     let mut out = header(network.name());
     for event in network.event_ids() {
-        let names: Vec<&str> =
-            network.events()[event.index()].names.iter().map(|name| name.text.as_str()).collect();
+        let names: Vec<&str> = network.events()[event.index()].shown_names().collect();
         let style = node_style(event == network.origin(), network.link_of(event).is_some());
         line(&mut out, format_args!("n{} [label=\"{}\"{style}]", event.0, label(&names)));
     }

@@ -409,10 +409,7 @@ struct EventDocument<'a>(&'a Event);
 impl Serialize for EventDocument<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         // A network file has no internal names: of an event that has others they are left out.
-        let written: Vec<&str> =
-            self.0.names.iter().filter(|name| !name.internal).map(|name| name.text.as_str()).collect();
-        let all = self.0.names.iter().map(|name| name.text.as_str());
-        let names = if written.is_empty() { all.collect() } else { written };
+        let names: Vec<&str> = self.0.shown_names().collect();
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("id", names[0])?;
         if names.len() > 1 {

@@ -25,6 +25,14 @@ pub struct Event {
     pub names: Vec<Name>,
 }
 
+impl Event {
+    /// The names to show: those a user wrote, or all if there are none.
+    pub fn shown_names(&self) -> impl Iterator<Item = &str> {
+        let written = self.names.iter().any(|name| !name.internal);
+        self.names.iter().filter(move |name| !(written && name.internal)).map(|name| name.text.as_str())
+    }
+}
+
 /// One name of an event, in lower case: `shower:start`, or `main.1:start` for an event no user wrote.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Name {

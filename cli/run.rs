@@ -4,7 +4,7 @@ use std::fmt;
 use std::io;
 
 use kirk_compiler::{Code, Diagnostic, Severity, Source, Span};
-use kirk_network::json::Seconds;
+use kirk_network::json::{ReadProblem, Seconds, locate};
 use kirk_network::{Duration, EventId, Network, Time};
 use kirk_runtime::{Impossible, NoPlan, Outcome, Plan, Simulation, Strategy, Temper, simulate};
 use serde::Deserialize;
@@ -147,17 +147,10 @@ impl Observations {
                 }
             }
             Err(error) => {
-                let line_start: usize =
-                    text.split_inclusive('\n').take(error.line().saturating_sub(1)).map(str::len).sum();
-                let mut at = (line_start + error.column().saturating_sub(1)).min(text.len());
-                while !text.is_char_boundary(at) {
-                    at -= 1;
-                }
-                let span = Span::new(source, at, at);
+                let ReadProblem { offset, message } = locate(&text, &error);
+                let span = Span::new(source, offset, offset);
                 let help =
                     "the file is a JSON object of event: time in seconds, such as {\"drive:end\": 17.5}";
-                let message = error.to_string();
-                let message = message.rfind(" at line ").map_or(message.as_str(), |end| &message[..end]);
                 self.diagnostics.push(Diagnostic::error(Code::BadObservation, span, message).help(help));
             }
         }

@@ -3,6 +3,7 @@
 use std::io;
 
 use kirk_compiler::{Code, Diagnostic, Source, Span};
+use kirk_network::json::{ReadProblem, locate};
 use kirk_runtime::{Execution, verify as check};
 use serde::Serialize;
 
@@ -18,7 +19,8 @@ const LARGEST_RECORD: u64 = 256 << 20;
 pub(crate) fn verify(arguments: &Verify, common: &Common) -> io::Result<Status> {
     let execution = match read_execution(&arguments.execution) {
         Ok(execution) => Some(execution),
-        Err((source, diagnostic)) => {
+        Err(wrong) => {
+            let (source, diagnostic) = *wrong;
             Reporter::new(&[source]).show(&[diagnostic], common)?;
             None
         }
@@ -63,23 +65,16 @@ pub(crate) fn verify(arguments: &Verify, common: &Common) -> io::Result<Status> 
     Ok(if violations.is_empty() { Status::Yes } else { Status::No })
 }
 
-fn read_execution(file: &str) -> Result<Execution, (Source, Diagnostic)> {
+fn read_execution(file: &str) -> Result<Execution, Box<(Source, Diagnostic)>> {
     let bytes = read(file, LARGEST_RECORD).map_err(|message| {
-        (Source::new(file, ""), Diagnostic::error(Code::CannotRead, Span::default(), message))
+        Box::new((Source::new(file, ""), Diagnostic::error(Code::CannotRead, Span::default(), message)))
     })?;
     let text = String::from_utf8_lossy(&bytes).into_owned();
     serde_json::from_str(&text).map_err(|error| {
-        let before: usize =
-            text.split_inclusive('\n').take(error.line().saturating_sub(1)).map(str::len).sum();
-        let mut at = (before + error.column().saturating_sub(1)).min(text.len());
-        while !text.is_char_boundary(at) {
-            at -= 1;
-        }
-        let message = error.to_string();
-        let message = message.rfind(" at line ").map_or(message.as_str(), |end| &message[..end]).to_string();
-        let diagnostic = Diagnostic::error(Code::BadRecord, Span::new(0, at, at), message)
+        let ReadProblem { offset, message } = locate(&text, &error);
+        let diagnostic = Diagnostic::error(Code::BadRecord, Span::new(0, offset, offset), message)
             .help("kirk run --format json writes such a record");
-        (Source::new(file, text.as_str()), diagnostic)
+        Box::new((Source::new(file, text.as_str()), diagnostic))
     })
 }
 

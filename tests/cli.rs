@@ -1,5 +1,7 @@
 //! The promises of the command line: exit statuses, formats, and a message for every kind of wrong input.
 
+#![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
+
 mod binary;
 
 use std::fs;

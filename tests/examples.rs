@@ -1,5 +1,7 @@
 //! Every file in `examples/rmpl` is a case by being there: what `check` says, what it is compiled to, how it is executed.
 
+#![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
+
 mod binary;
 
 use binary::{kirk, stderr, stdout};

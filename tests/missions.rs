@@ -1,5 +1,7 @@
 //! Missions with known answers: the listings of the thesis, executed to the second as the original's logs have it.
 
+#![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
+
 mod binary;
 
 use binary::{kirk, stdout};
@@ -223,8 +225,11 @@ fn the_glider_is_told_that_conditions_are_not_planned_with() {
     assert!(String::from_utf8_lossy(&output.stderr).contains("K0507"), "{output:?}");
 }
 
-/// A source that is not controllable and the kinds of constraint its explanation must name, with their bounds.
-const UNCONTROLLABLE: &[(&str, &str, &[(&str, f64)])] = &[
+/// What a constraint is, and its bound.
+type Blamed = (&'static str, f64);
+
+/// A source that is not controllable and what its explanation must name.
+const UNCONTROLLABLE: &[(&str, &str, &[Blamed])] = &[
     (
         "two ends forced together",
         "(define-control-program a () (declare (primitive) (duration (simple :lower-bound 1 :upper-bound 5) :contingent t)))

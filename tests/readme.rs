@@ -1,5 +1,7 @@
 //! What the README shows is what the program prints.
 
+#![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
+
 mod binary;
 
 use binary::{kirk, stderr, stdout};

@@ -25,8 +25,7 @@ pub struct ReadProblem {
 
 /// Reads a network file, or lists everything that is wrong with it.
 pub fn read(text: &str) -> Result<Network, Vec<ReadProblem>> {
-    let file: FileText =
-        serde_json::from_str(text).map_err(|error| vec![problem(text, 0, "", text, &error)])?;
+    let file: FileText = serde_json::from_str(text).map_err(|error| vec![locate(text, &error)])?;
     let mut reader = Reader { text, problems: Vec::new() };
     let network = reader.network(&file);
     match network {
@@ -258,6 +257,11 @@ impl<'a> Reader<'a> {
     }
 }
 
+/// Where and what an error of serde_json on `text` is.
+pub fn locate(text: &str, error: &serde_json::Error) -> ReadProblem {
+    problem(text, 0, "", text, error)
+}
+
 /// Words an error of serde_json, which counts lines and columns within `part` (that starts at `start` of `text`).
 fn problem(text: &str, start: usize, element: &str, part: &str, error: &serde_json::Error) -> ReadProblem {
     let line_start: usize =
@@ -313,7 +317,7 @@ impl Serialize for Document<'_> {
         map.serialize_entry("name", network.name())?;
         map.serialize_entry("time_unit", "s")?;
         map.serialize_entry("origin", network.label(network.origin()))?;
-        map.serialize_entry("events", &List(network.events(), |event| EventDocument(event)))?;
+        map.serialize_entry("events", &List(network.events(), EventDocument))?;
         let requirement = |requirement| RequirementDocument { network, requirement };
         map.serialize_entry("requirements", &List(network.requirements(), requirement))?;
         map.serialize_entry(

@@ -1,5 +1,11 @@
 //! The public benchmark networks under `tests/networks` give their known verdicts, with a proof for every "no".
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::disallowed_methods,
+    reason = "a test that fails may panic, and reads files"
+)]
+
 use std::fs;
 use std::path::Path;
 

@@ -258,11 +258,8 @@ impl Verifier<'_> {
                     free.push((from, to, weight));
                     continue;
                 }
-                if !memo.contains_key(&from) {
-                    let most = self.longest(from).unwrap_or_default();
-                    memo.insert(from, most);
-                }
-                let most = memo[&from].get(to.index()).copied().flatten();
+                let most = memo.entry(from).or_insert_with(|| self.longest(from).unwrap_or_default());
+                let most = most.get(to.index()).copied().flatten();
                 if most.is_none_or(|most| most > weight) {
                     self.violated(from, to, weight, most);
                 }

@@ -2,6 +2,8 @@
 //!
 //! `KIRK_CASES=100000 cargo test -p kirk-runtime --release --test survives_nature` tries as many networks as one likes.
 
+#![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
+
 #[path = "../../network/tests/oracle/mod.rs"]
 mod oracle;
 

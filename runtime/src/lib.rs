@@ -29,8 +29,8 @@
 //! 2. `poll_dispatch()`: what is to be executed, until there is nothing more;
 //! 3. `poll_timeout()`: when to call `handle_timeout` if nothing is heard before.
 //!
-//! [`simulate`] is the loop around it with a simulated [`nature`] and a clock that jumps; it returns an [`Execution`], the
-//! record of what was done and known. [`verify`] checks such a record and knows nothing of the dispatcher.
+//! [`simulate()`] is the loop around it with a simulated [`nature`] and a clock that jumps; it returns an [`Execution`], the
+//! record of what was done and known. [`verify()`] checks such a record and knows nothing of the dispatcher.
 //!
 //! # Invariants
 //!

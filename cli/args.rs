@@ -70,7 +70,7 @@ pub(crate) enum TextOrJson {
 
 #[derive(Debug, Args)]
 pub(crate) struct Run {
-    /// The mission: RMPL (.rmpl, .lisp), a network (.json), or `-` for standard input.
+    /// The mission: RMPL (.rmpl, .lisp), a network (.json, .stnu, .plainstnu), or `-` for standard input.
     #[arg(value_name = "FILE")]
     pub(crate) file: String,
     #[command(flatten)]
@@ -129,9 +129,30 @@ pub(crate) struct Check {
     pub(crate) files: Vec<String>,
     #[command(flatten)]
     pub(crate) selection: Selection,
+    /// What to assume about the delays of news, instead of what is written.
+    #[arg(long, value_enum, default_value_t = Delays::AsWritten, value_name = "WHAT")]
+    pub(crate) delays: Delays,
     /// How to print the result; JSON is one document per file, one per line.
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
     pub(crate) format: TextOrJson,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Delays {
+    /// The delays of the mission (variable-delay controllability).
+    AsWritten,
+    /// All news comes at once (dynamic controllability).
+    Zero,
+    /// News is always as early as it can be (fixed-delay controllability).
+    Minimum,
+    /// News is always late by the mean of its bounds (fixed-delay controllability).
+    Mean,
+    /// News is always as late as it can be (fixed-delay controllability).
+    Maximum,
+    /// No news ever comes (strong controllability).
+    Never,
+    /// Duration and delay are one uncertainty, known only from the news.
+    Elongated,
 }
 
 #[derive(Debug, Args)]

@@ -4,12 +4,13 @@ use std::io;
 use std::time::Instant;
 
 use kirk_compiler::{Code, Diagnostic, Severity, Span};
+use kirk_network::assume::{Assumed, Assumption, check_assuming};
 use kirk_network::merge::merge;
 use kirk_network::stnu::TooLarge;
 use kirk_network::{Conflict, Network, Verdict};
 use serde::Serialize;
 
-use crate::args::{Check, Common, Selection, TextOrJson};
+use crate::args::{Check, Common, Delays, TextOrJson};
 use crate::conflict::{self, MemberJson};
 use crate::input::{Input, load};
 use crate::json::line;
@@ -26,7 +27,7 @@ pub(crate) fn check(arguments: &Check, common: &Common) -> io::Result<Status> {
 
 fn check_one(file: &str, arguments: &Check, common: &Common) -> io::Result<Status> {
     let mut input = load(file, &arguments.selection);
-    let judged = judge(&mut input);
+    let judged = judge_assuming(&mut input, arguments.delays);
     let status = match &judged {
         None => Status::Wrong,
         Some(Judged { conflict: None, .. }) => Status::Yes,
@@ -35,13 +36,13 @@ fn check_one(file: &str, arguments: &Check, common: &Common) -> io::Result<Statu
     let reporter = Reporter::new(&input.sources);
     match arguments.format {
         TextOrJson::Json => {
-            let document = CheckJson::new(file, &input, judged.as_ref(), &reporter);
+            let document = CheckJson::new(file, &input, judged.as_ref(), arguments.delays, &reporter);
             print(&line(&document)?)?;
         }
         TextOrJson::Text => {
             reporter.show(&input.diagnostics, common)?;
             if !common.quiet || status == Status::Yes {
-                print_line(&verdict_line(file, &input, judged.as_ref(), &arguments.selection))?;
+                print_line(&verdict_line(file, &input, judged.as_ref(), arguments))?;
             }
         }
     }
@@ -53,17 +54,28 @@ pub(crate) struct Judged {
     pub(crate) conflict: Option<Conflict>,
     seconds: f64,
     merged: Network,
+    /// What the conflict speaks of, if not the network of the input: the same with other delays.
+    assumed: Option<Network>,
 }
 
 /// Decides; a conflict becomes one of the diagnostics. `None` if there is no network.
 pub(crate) fn judge(input: &mut Input) -> Option<Judged> {
+    judge_assuming(input, Delays::AsWritten)
+}
+
+fn judge_assuming(input: &mut Input, delays: Delays) -> Option<Judged> {
     let network = input.network.as_ref()?;
     let start = Instant::now();
-    let verdict = kirk_network::check(network);
+    let decided = match delays.assumption() {
+        Assumption::AsWritten => kirk_network::check(network).map(|verdict| (verdict, None)),
+        assumption => {
+            check_assuming(network, assumption).map(|Assumed { verdict, network }| (verdict, Some(network)))
+        }
+    };
     let seconds = start.elapsed().as_secs_f64();
-    let conflict = match verdict {
-        Ok(Verdict::Controllable) => None,
-        Ok(Verdict::Uncontrollable(conflict)) => Some(conflict),
+    let (conflict, assumed) = match decided {
+        Ok((Verdict::Controllable, assumed)) => (None, assumed),
+        Ok((Verdict::Uncontrollable(conflict), assumed)) => (Some(conflict), assumed),
         Err(TooLarge) => {
             input.diagnostics.push(too_large());
             return None;
@@ -71,17 +83,56 @@ pub(crate) fn judge(input: &mut Input) -> Option<Judged> {
     };
     let merged = merge(network).network;
     if let Some(conflict) = &conflict {
-        let diagnostic = conflict::diagnostic(conflict, network, input);
+        let mut diagnostic = conflict::diagnostic(conflict, assumed.as_ref().unwrap_or(network), input);
+        diagnostic.message.push_str(delays.words());
         input.diagnostics.push(diagnostic);
     }
-    Some(Judged { conflict, seconds, merged })
+    Some(Judged { conflict, seconds, merged, assumed })
+}
+
+impl Delays {
+    fn assumption(self) -> Assumption {
+        match self {
+            Delays::AsWritten => Assumption::AsWritten,
+            Delays::Zero => Assumption::Zero,
+            Delays::Minimum => Assumption::Minimum,
+            Delays::Mean => Assumption::Mean,
+            Delays::Maximum => Assumption::Maximum,
+            Delays::Never => Assumption::Never,
+            Delays::Elongated => Assumption::Elongated,
+        }
+    }
+
+    /// What is decided, as `kirk-check/1` calls it.
+    fn kind(self) -> &'static str {
+        match self {
+            Delays::AsWritten => "variable-delay",
+            Delays::Zero => "dynamic",
+            Delays::Minimum | Delays::Mean | Delays::Maximum => "fixed-delay",
+            Delays::Never => "strong",
+            Delays::Elongated => "elongated",
+        }
+    }
+
+    /// The assumption as the end of "controllable ...".
+    fn words(self) -> &'static str {
+        match self {
+            Delays::AsWritten => "",
+            Delays::Zero => " if all news comes at once",
+            Delays::Minimum => " if all news is as early as it can be",
+            Delays::Mean => " if all news is late by its mean delay",
+            Delays::Maximum => " if all news is as late as it can be",
+            Delays::Never => " if no news ever comes",
+            Delays::Elongated => " if durations and delays are one uncertainty",
+        }
+    }
 }
 
 pub(crate) fn too_large() -> Diagnostic {
     Diagnostic::error(Code::NumbersTooLarge, Span::default(), TooLarge.to_string())
 }
 
-fn verdict_line(file: &str, input: &Input, judged: Option<&Judged>, selection: &Selection) -> String {
+fn verdict_line(file: &str, input: &Input, judged: Option<&Judged>, arguments: &Check) -> String {
     let Some(judged) = judged else {
         let errors = input.diagnostics.iter().filter(|d| d.severity == Severity::Error).count();
         let plural = if errors == 1 { "" } else { "s" };
@@ -89,10 +140,11 @@ fn verdict_line(file: &str, input: &Input, judged: Option<&Judged>, selection: &
     };
     let network = &judged.merged;
     let verdict = if judged.conflict.is_none() { "controllable" } else { "not controllable" };
-    let program = input.program(selection);
+    let program = input.program(&arguments.selection);
     let name = if input.compilation.is_some() { format!("`{program}` is ") } else { String::new() };
     format!(
-        "{file}: {name}{verdict} ({} events, {} requirements, {} contingent links)",
+        "{file}: {name}{verdict}{} ({} events, {} requirements, {} contingent links)",
+        arguments.delays.words(),
         network.events().len(),
         network.requirements().len(),
         network.contingents().len()
@@ -119,22 +171,25 @@ impl<'a> CheckJson<'a> {
         file: &'a str,
         input: &'a Input,
         judged: Option<&Judged>,
+        delays: Delays,
         reporter: &Reporter<'_>,
     ) -> CheckJson<'a> {
         let conflict = judged.and_then(|judged| judged.conflict.as_ref());
         let merged = judged.map(|judged| &judged.merged);
+        let assumed = judged.and_then(|judged| judged.assumed.as_ref());
+        let network = assumed.or(input.network.as_ref());
         CheckJson {
             format: "kirk-check/1",
             file,
             controllable: judged.map(|judged| judged.conflict.is_none()),
-            kind: "variable-delay",
+            kind: delays.kind(),
             events: merged.map_or(0, |network| network.events().len()),
             requirements: merged.map_or(0, |network| network.requirements().len()),
             contingents: merged.map_or(0, |network| network.contingents().len()),
             conservative: conflict.is_some_and(|conflict| conflict.conservative),
             seconds: judged.map_or(0.0, |judged| judged.seconds),
             diagnostics: input.diagnostics.iter().map(|d| reporter.to_json(d)).collect(),
-            conflict: match (conflict, &input.network) {
+            conflict: match (conflict, network) {
                 (Some(conflict), Some(network)) => conflict::to_json(conflict, network, input, reporter),
                 _ => Vec::new(),
             },

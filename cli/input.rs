@@ -5,7 +5,8 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use kirk_compiler::{Code, Compilation, Diagnostic, Options, Origins, Source, Span, compile};
-use kirk_network::{Network, json};
+use kirk_network::json::ReadProblem;
+use kirk_network::{Network, graphml, json, plain};
 
 use crate::args::Selection;
 
@@ -28,11 +29,12 @@ const LARGEST_PROGRAM: u64 = 16 << 20;
 /// Networks are written by machines.
 const LARGEST_NETWORK: u64 = 64 << 20;
 
-#[derive(Clone, Copy, PartialEq)]
 enum Kind {
     Rmpl,
-    Json,
+    Network(Reader),
 }
+
+type Reader = fn(&str) -> Result<Network, Vec<ReadProblem>>;
 
 /// Reads and compiles an input file; `-` is standard input.
 pub(crate) fn load(file: &str, selection: &Selection) -> Input {
@@ -60,7 +62,7 @@ pub(crate) fn load(file: &str, selection: &Selection) -> Input {
         }
     };
     match kind(file, &text) {
-        Kind::Json => network(name, text),
+        Kind::Network(reader) => network(name, text, reader),
         Kind::Rmpl if text.len() as u64 > LARGEST_PROGRAM => {
             let message =
                 format!("this file has {} bytes; kirk reads programs of up to {LARGEST_PROGRAM}", text.len());
@@ -73,10 +75,14 @@ pub(crate) fn load(file: &str, selection: &Selection) -> Input {
 /// The extension decides; without a known one, the first character.
 fn kind(file: &str, text: &str) -> Kind {
     let extension = Path::new(file).extension().and_then(|e| e.to_str()).map(str::to_lowercase);
+    let start = text.trim_start_matches('\u{feff}').trim_start();
     match extension.as_deref() {
         Some("rmpl" | "lisp") => Kind::Rmpl,
-        Some("json") => Kind::Json,
-        _ if text.trim_start().starts_with('{') => Kind::Json,
+        Some("json") => Kind::Network(json::read),
+        Some("stnu") => Kind::Network(graphml::read),
+        Some("plainstnu") => Kind::Network(plain::read),
+        _ if start.starts_with('{') => Kind::Network(json::read),
+        _ if start.starts_with('<') && start.contains("graphml") => Kind::Network(graphml::read),
         _ => Kind::Rmpl,
     }
 }
@@ -123,13 +129,13 @@ fn program(name: &str, text: String, selection: &Selection) -> Input {
     Input { sources, diagnostics, compilation: Some(compilation), network, origins }
 }
 
-fn network(name: &str, text: String) -> Input {
-    let read = json::read(&text);
+fn network(name: &str, text: String, reader: Reader) -> Input {
+    let read = reader(&text);
     let sources = vec![Source::new(name, text)];
     let mut input =
         Input { sources, diagnostics: Vec::new(), compilation: None, network: None, origins: None };
     match read {
-        Ok(network) => input.network = Some(network),
+        Ok(network) => input.network = Some(named(network, name)),
         Err(problems) => {
             input.diagnostics = problems
                 .into_iter()
@@ -141,6 +147,15 @@ fn network(name: &str, text: String) -> Input {
         }
     }
     input
+}
+
+/// A network without a name takes that of its file.
+fn named(network: Network, file: &str) -> Network {
+    let stem = Path::new(file).file_stem().and_then(|stem| stem.to_str());
+    let (true, Some(stem)) = (network.name().is_empty(), stem) else { return network };
+    let (events, requirements) = (network.events().to_vec(), network.requirements().to_vec());
+    let contingents = network.contingents().to_vec();
+    Network::new(stem.to_string(), network.origin(), events, requirements, contingents).unwrap_or(network)
 }
 
 impl Input {

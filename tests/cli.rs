@@ -189,6 +189,69 @@ fn a_compiled_network_is_input_again() {
 }
 
 #[test]
+fn networks_of_other_tools_are_input_too() {
+    let stnu = "tests/networks/lane50_dc_000.stnu";
+    for file in [stnu, "tests/networks/lane50_dc_000.plainstnu"] {
+        let check = kirk(&["check", file]);
+        let verdict = format!("{file}: controllable (51 events, 121 requirements, 5 contingent links)\n");
+        assert_eq!((check.status.code(), stdout(&check)), (Some(0), verdict), "{}", stderr(&check));
+        assert_eq!(kirk(&["run", file, "--simulate"]).status.code(), Some(0));
+        let compiled = stdout(&kirk(&["compile", file, "--format", "json"]));
+        let compiled: Value = serde_json::from_str(&compiled).unwrap();
+        assert_eq!(compiled["name"], "lane50_dc_000");
+    }
+    assert_eq!(kirk(&["check", "tests/networks/lane50_notDC_000.stnu"]).status.code(), Some(1));
+    // Without an extension GraphML is known by its first element.
+    let text = fs::read(stnu).unwrap();
+    let check = kirk_with_input(&["check", "-"], &text);
+    assert_eq!(check.status.code(), Some(0), "{}", stderr(&check));
+    is_refused(&["check", "-"], b"<?xml version=\"1.0\"?><graphml><grph/></graphml>", "K0702");
+    let folder = tempfile::tempdir().unwrap();
+    let wrong = folder.path().join("wrong.plainstnu");
+    fs::write(&wrong, "# Time-Point Names\nZ A\n# Ordinary Edges\nA ten Z\n").unwrap();
+    is_refused(&["check", wrong.to_str().unwrap()], b"", "line 4");
+}
+
+#[test]
+fn a_network_without_a_name_takes_that_of_its_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("Rover one.json");
+    let network = r#"{"format": "kirk-network/1", "origin": "z", "events": ["z"]}"#;
+    fs::write(&file, network).unwrap();
+    let compiled = stdout(&kirk(&["compile", file.to_str().unwrap(), "--format", "json"]));
+    assert!(compiled.contains(r#""name":"Rover one""#), "{compiled}");
+}
+
+#[test]
+fn the_same_mission_can_be_checked_under_other_delays() {
+    let words = [
+        ("as-written", "variable-delay", "controllable (", Some(0)),
+        ("zero", "dynamic", "controllable if all news comes at once (", Some(0)),
+        ("minimum", "fixed-delay", "controllable if all news is as early as it can be (", Some(0)),
+        ("mean", "fixed-delay", "controllable if all news is late by its mean delay (", Some(0)),
+        ("maximum", "fixed-delay", "controllable if all news is as late as it can be (", Some(0)),
+        ("never", "strong", "not controllable if no news ever comes (", Some(1)),
+        ("elongated", "elongated", "controllable if durations and delays are one uncertainty (", Some(0)),
+    ];
+    let file = "examples/rmpl/repeater.rmpl";
+    for (delays, kind, verdict, status) in words {
+        let text = kirk(&["check", file, "--delays", delays]);
+        assert_eq!(text.status.code(), status, "{delays}");
+        assert!(stdout(&text).contains(&format!("`main` is {verdict}")), "{}", stdout(&text));
+        let json = kirk(&["check", file, "--delays", delays, "--format", "json"]);
+        let document: Value = serde_json::from_str(&stdout(&json)).unwrap();
+        assert_eq!(document["kind"], kind);
+        assert_eq!(document["controllable"], status == Some(0));
+        let members = document["conflict"].as_array().unwrap();
+        let sum: f64 = members.iter().map(|member| member["amount"].as_f64().unwrap()).sum();
+        assert_eq!(sum < 0.0, status == Some(1), "{delays}");
+    }
+    let never = kirk(&["check", file, "--delays", "never"]);
+    assert!(stderr(&never).contains("1 s are missing if no news ever comes"), "{}", stderr(&never));
+    is_refused(&["check", file, "--delays", "soon"], b"", "as-written");
+}
+
+#[test]
 fn every_stage_has_its_formats() {
     for stage in ["ast", "episodes", "stnu", "reduced", "dispatchable"] {
         for format in ["text", "json", "sexpr", "dot", "graphml"] {

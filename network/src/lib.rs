@@ -50,6 +50,7 @@
 //! Spans and sentences (the compiler has them), the state of an execution (the runtime has it), choices between
 //! alternatives, probabilities.
 
+pub mod assume;
 mod blame;
 pub mod check;
 pub mod conflict;

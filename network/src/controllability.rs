@@ -10,8 +10,8 @@
 //! set of arrays instead of one per suspended search; every link causes at most one new beginning, so it costs a
 //! factor of two at worst.
 
-use crate::heap::Heap;
-use crate::stnu::{Edge, NONE, Rows, Stnu, TooLarge, add};
+use crate::radix::RadixQueue;
+use crate::stnu::{Edge, LIMIT, NONE, Rows, Stnu, TooLarge, add, within_limit};
 
 /// One step along an edge of a cycle; the numbers are indices into [`Stnu::edges`] and [`Stnu::links`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -74,7 +74,8 @@ pub(crate) fn solve(stnu: &Stnu) -> Result<Option<Solution>, TooLarge> {
     Ok(match search.run()? {
         None => {
             let derived = search.edges.split_off(search.derived_from);
-            Some(Solution { derived, waits: search.waits, potential: search.potential })
+            let potential = search.nodes.iter().map(|node| node.potential).collect();
+            Some(Solution { derived, waits: search.waits, potential })
         }
         Some(_) => None,
     })
@@ -88,6 +89,12 @@ type EdgeId = u32;
 enum Move {
     Along(EdgeId),
     Upper(u32),
+}
+
+/// The places in `incoming` of the ordinary edges into a node.
+#[inline]
+fn incoming_of(incoming_at: &[u32], node: u32) -> std::ops::Range<usize> {
+    incoming_at[node as usize] as usize..incoming_at[node as usize + 1] as usize
 }
 
 enum Found {
@@ -104,41 +111,62 @@ enum State {
     Done,
 }
 
+/// What the searches know of a node, side by side in memory.
+#[derive(Clone, Copy)]
+struct Node {
+    /// See [`Solution::potential`].
+    potential: i64,
+    /// The backward search: best known distance to C and the edge it goes by, valid if `reached` is the current round.
+    distance: i64,
+    via: EdgeId,
+    reached: u32,
+    /// The round in which the search went on from here.
+    expanded: u32,
+    /// The link that ends here, or [`NONE`].
+    ending: u32,
+}
+
+/// An ordinary edge as seen from its target.
+#[derive(Clone, Copy)]
+struct Incoming {
+    weight: i64,
+    from: u32,
+    edge: EdgeId,
+}
+
 struct Search<'a> {
     stnu: &'a Stnu,
     /// Ordinary, lower-case and derived edges.
     edges: Vec<Edge>,
     lower_from: usize,
     derived_from: usize,
-    incoming: Rows,
+    /// Ordinary edges by target, in one piece; those into node v are `incoming[incoming_at[v]..incoming_at[v + 1]]`.
+    incoming: Vec<Incoming>,
+    incoming_at: Vec<u32>,
     outgoing: Rows,
     /// Derived edges as linked lists: the last one into and out of each node, and the one before each.
     derived_in: Vec<EdgeId>,
     derived_out: Vec<EdgeId>,
     before_in: Vec<EdgeId>,
     before_out: Vec<EdgeId>,
-    /// The link ending at, and the links starting at each node.
-    ending: Vec<u32>,
     starting: Rows,
+    /// How many links that start at each node are not done.
+    undone: Vec<u32>,
     state: Vec<State>,
-    potential: Vec<i64>,
-    heap: Heap,
-    /// The backward search: best known distance to C, valid where `stamp` is current, and the edge it goes by.
-    distance: Vec<i64>,
-    via: Vec<EdgeId>,
-    stamp: Vec<u32>,
-    expanded: Vec<u32>,
+    nodes: Vec<Node>,
+    queue: RadixQueue,
     round: u32,
     reached: Vec<u32>,
+    improved: Vec<(u32, EdgeId)>,
     waits: Vec<Wait>,
-    /// Kept only if asked for: how each derived edge came about, and how links in progress led to one another.
+    /// Kept only if asked for: how each derived edge came about.
     recording: bool,
     derivations: Vec<Vec<Move>>,
 }
 
 impl<'a> Search<'a> {
     fn new(stnu: &'a Stnu, recording: bool) -> Search<'a> {
-        let nodes = stnu.nodes as usize;
+        let count = stnu.nodes as usize;
         let mut edges = stnu.edges.clone();
         let lower_from = edges.len();
         edges.extend(stnu.links.iter().map(|l| Edge {
@@ -146,28 +174,42 @@ impl<'a> Search<'a> {
             to: l.contingent,
             weight: l.lower,
         }));
+        let by_target = Rows::new(stnu.nodes, stnu.edges.iter().map(|e| e.to));
+        let mut incoming = Vec::with_capacity(stnu.edges.len());
+        let mut incoming_at = Vec::with_capacity(count + 1);
+        for node in 0..stnu.nodes {
+            incoming_at.push(incoming.len() as u32);
+            incoming.extend(by_target.of(node).iter().map(|&edge| {
+                let Edge { from, weight, .. } = edges[edge as usize];
+                Incoming { weight, from, edge }
+            }));
+        }
+        incoming_at.push(incoming.len() as u32);
+        let mut undone = vec![0; count];
+        for link in &stnu.links {
+            undone[link.activation as usize] += 1;
+        }
+        let node = |ending| Node { potential: 0, distance: 0, via: NONE, reached: 0, expanded: 0, ending };
         Search {
             stnu,
             lower_from,
             derived_from: edges.len(),
             edges,
-            incoming: Rows::new(stnu.nodes, stnu.edges.iter().map(|e| e.to)),
+            incoming,
+            incoming_at,
             outgoing: Rows::new(stnu.nodes, stnu.edges.iter().map(|e| e.from)),
-            derived_in: vec![NONE; nodes],
-            derived_out: vec![NONE; nodes],
+            derived_in: vec![NONE; count],
+            derived_out: vec![NONE; count],
             before_in: Vec::new(),
             before_out: Vec::new(),
-            ending: stnu.link_ending_at(),
             starting: Rows::new(stnu.nodes, stnu.links.iter().map(|l| l.activation)),
+            undone,
             state: vec![State::Untouched; stnu.links.len()],
-            potential: vec![0; nodes],
-            heap: Heap::new(stnu.nodes),
-            distance: vec![0; nodes],
-            via: vec![NONE; nodes],
-            stamp: vec![0; nodes],
-            expanded: vec![0; nodes],
+            nodes: stnu.link_ending_at().into_iter().map(node).collect(),
+            queue: RadixQueue::new(),
             round: 0,
             reached: Vec::new(),
+            improved: Vec::new(),
             waits: Vec::new(),
             recording,
             derivations: Vec::new(),
@@ -180,7 +222,7 @@ impl<'a> Search<'a> {
         }
         // Late links first: then the links a search meets are usually done.
         let mut order: Vec<u32> = (0..self.stnu.links.len() as u32).collect();
-        order.sort_by_key(|&link| (self.potential[self.stnu.links[link as usize].activation as usize], link));
+        order.sort_by_key(|&link| (self.node(self.stnu.links[link as usize].activation).potential, link));
         // Links in progress, each with the way from the activation of the next one to its own contingent event.
         let mut progress: Vec<(u32, Vec<Move>)> = Vec::new();
         for first in order {
@@ -192,6 +234,7 @@ impl<'a> Search<'a> {
                 match self.propagate(link)? {
                     Found::Done => {
                         self.state[link as usize] = State::Done;
+                        self.undone[self.stnu.links[link as usize].activation as usize] -= 1;
                         progress.pop();
                     }
                     Found::DoFirst(next) if self.state[next as usize] == State::InProgress => {
@@ -214,32 +257,41 @@ impl<'a> Search<'a> {
 
     /// Potentials over ordinary and lower-case edges, or a negative cycle of them.
     ///
-    /// Bellman-Ford in rounds over the nodes that changed; after each round the tree of last improvements is searched
-    /// for a cycle, so a negative one is found about as soon as it exists.
+    /// Bellman-Ford in rounds over the nodes that changed; now and then the tree of last improvements is searched for a
+    /// cycle, so a negative one is found about as soon as it exists.
     fn initial_potential(&mut self) -> Result<Option<Vec<Move>>, TooLarge> {
-        let nodes = self.stnu.nodes;
-        let mut changed: Vec<u32> = (0..nodes).rev().collect();
-        let mut queued = vec![false; nodes as usize];
+        let mut changed: Vec<u32> = (0..self.stnu.nodes).rev().collect();
+        let mut queued = vec![false; self.nodes.len()];
         let mut next = Vec::new();
+        let (mut rounds, mut next_look) = (0, 1);
         while !changed.is_empty() {
             for &to in &changed {
                 queued[to as usize] = false;
-                let potential = self.potential[to as usize];
-                let lower = self.lower_into(to);
-                for &edge in self.incoming.of(to).iter().chain(lower.as_slice()) {
-                    let Edge { from, weight, .. } = self.edges[edge as usize];
-                    let candidate = add(weight, potential)?;
-                    if candidate < self.potential[from as usize] {
-                        self.potential[from as usize] = candidate;
-                        self.via[from as usize] = edge;
+                let potential = within_limit(self.node(to).potential)?;
+                let mut relax = |from: u32, edge: EdgeId, weight: i64, node: &mut Node| {
+                    let candidate = weight + potential;
+                    if candidate < node.potential {
+                        node.potential = candidate;
+                        node.via = edge;
                         if !std::mem::replace(&mut queued[from as usize], true) {
                             next.push(from);
                         }
                     }
+                };
+                if let Some(lower) = self.lower_into(to) {
+                    let Edge { from, weight, .. } = self.edges[lower as usize];
+                    relax(from, lower, weight, &mut self.nodes[from as usize]);
+                }
+                for &Incoming { from, edge, weight } in &self.incoming[incoming_of(&self.incoming_at, to)] {
+                    relax(from, edge, weight, &mut self.nodes[from as usize]);
                 }
             }
-            if let Some(cycle) = self.cycle_of_improvements() {
-                return Ok(Some(cycle));
+            rounds += 1;
+            if rounds == next_look {
+                next_look += next_look / 4 + 1;
+                if let Some(cycle) = self.cycle_of_improvements() {
+                    return Ok(Some(cycle));
+                }
             }
             changed.clear();
             std::mem::swap(&mut changed, &mut next);
@@ -248,26 +300,30 @@ impl<'a> Search<'a> {
     }
 
     fn cycle_of_improvements(&self) -> Option<Vec<Move>> {
-        let nodes = self.stnu.nodes as usize;
-        let mut walk_of = vec![NONE; nodes];
-        for start in 0..nodes as u32 {
+        let mut walk_of = vec![NONE; self.nodes.len()];
+        for start in 0..self.stnu.nodes {
             let mut node = start;
-            while walk_of[node as usize] == NONE && self.via[node as usize] != NONE {
+            while walk_of[node as usize] == NONE && self.node(node).via != NONE {
                 walk_of[node as usize] = start;
-                node = self.edges[self.via[node as usize] as usize].to;
+                node = self.edges[self.node(node).via as usize].to;
             }
-            if walk_of[node as usize] == start && self.via[node as usize] != NONE {
-                return Some(self.walk(node, node, &self.via));
+            if walk_of[node as usize] == start && self.node(node).via != NONE {
+                return Some(self.walk(node, node));
             }
         }
         None
     }
 
+    #[inline]
+    fn node(&self, node: u32) -> &Node {
+        &self.nodes[node as usize]
+    }
+
     /// The edges from `node` along `via` up to `end` (at least one edge).
-    fn walk(&self, mut node: u32, end: u32, via: &[EdgeId]) -> Vec<Move> {
+    fn walk(&self, mut node: u32, end: u32) -> Vec<Move> {
         let mut moves = Vec::new();
         loop {
-            let edge = via[node as usize];
+            let edge = self.node(node).via;
             moves.push(Move::Along(edge));
             node = self.edges[edge as usize].to;
             if node == end {
@@ -279,7 +335,7 @@ impl<'a> Search<'a> {
     /// The number of the lower-case edge into `node`, if it is contingent.
     #[inline]
     fn lower_into(&self, node: u32) -> Option<EdgeId> {
-        let link = self.ending[node as usize];
+        let link = self.node(node).ending;
         (link != NONE).then(|| self.lower_from as u32 + link)
     }
 
@@ -288,48 +344,43 @@ impl<'a> Search<'a> {
         let here = self.stnu.links[link as usize];
         let width = here.upper - here.lower;
         self.round += 1;
-        self.heap.clear();
         self.reached.clear();
         let source = here.contingent;
         let mut loops_back = false;
-        self.reach(source, 0, NONE);
-        self.heap.push(source, 0);
-        while let Some((_, node)) = self.heap.pop() {
-            let distance = self.distance[node as usize];
-            self.expanded[node as usize] = self.round;
-            for &started in self.starting.of(node) {
-                if self.state[started as usize] != State::Done {
-                    return Ok(Found::DoFirst(started));
+        let node = &mut self.nodes[source as usize];
+        (node.distance, node.via, node.reached) = (0, NONE, self.round);
+        let key = -node.potential;
+        self.reached.push(source);
+        self.queue.restart(key);
+        self.queue.push(key, source);
+        while let Some((_, node)) = self.queue.pop() {
+            if self.node(node).expanded == self.round {
+                continue;
+            }
+            let distance = within_limit(self.node(node).distance)?;
+            self.nodes[node as usize].expanded = self.round;
+            if self.undone[node as usize] > 0 {
+                let undone = |link: &&u32| self.state[**link as usize] != State::Done;
+                if let Some(&first) = self.starting.of(node).iter().find(undone) {
+                    return Ok(Found::DoFirst(first));
                 }
             }
-            // Out of a contingent event the search goes on by its lower-case edge alone: what else is close to it
-            // has an edge to its activation, or waits for it.
-            let lower = self.lower_into(node);
-            let mut relax = |search: &mut Search<'a>, edge: EdgeId| -> Result<(), TooLarge> {
-                let Edge { from, weight, .. } = search.edges[edge as usize];
-                let candidate = add(weight, distance)?;
-                if from == source {
-                    loops_back |= candidate < width;
-                } else if search.stamp[from as usize] != search.round
-                    || candidate < search.distance[from as usize]
-                {
-                    search.reach(from, candidate, edge);
-                    if candidate < width {
-                        // Reduced by the potentials, every edge is non-negative; see `Solution::potential`.
-                        search.heap.push(from, add(candidate, -search.potential[from as usize])?);
-                    }
+            match self.lower_into(node) {
+                // Out of a contingent event the search goes on by its lower-case edge alone: what else is close to it
+                // has an edge to its activation, or waits for it.
+                Some(lower) if node != source => {
+                    let Edge { from, weight, .. } = self.edges[lower as usize];
+                    loops_back |= self.relax(source, width, from, lower, weight + distance);
                 }
-                Ok(())
-            };
-            match lower {
-                Some(lower) if node != source => relax(self, lower)?,
                 _ => {
-                    for at in 0..self.incoming.of(node).len() {
-                        relax(self, self.incoming.of(node)[at])?;
+                    for at in incoming_of(&self.incoming_at, node) {
+                        let Incoming { from, edge, weight } = self.incoming[at];
+                        loops_back |= self.relax(source, width, from, edge, weight + distance);
                     }
                     let mut edge = self.derived_in[node as usize];
                     while edge != NONE {
-                        relax(self, edge)?;
+                        let Edge { from, weight, .. } = self.edges[edge as usize];
+                        loops_back |= self.relax(source, width, from, edge, weight + distance);
                         edge = self.before_in[edge as usize - self.derived_from];
                     }
                 }
@@ -341,27 +392,48 @@ impl<'a> Search<'a> {
         self.derive(link)
     }
 
-    #[inline]
-    fn reach(&mut self, node: u32, distance: i64, via: EdgeId) {
-        if self.stamp[node as usize] != self.round {
-            self.stamp[node as usize] = self.round;
-            self.reached.push(node);
+    /// One step of the backward search: `from` is at this distance from the source by `edge`. True if it is the source
+    /// itself, closer than the width.
+    #[inline(always)]
+    fn relax(&mut self, source: u32, width: i64, from: u32, edge: EdgeId, distance: i64) -> bool {
+        if from == source {
+            return distance < width;
         }
-        self.distance[node as usize] = distance;
-        self.via[node as usize] = via;
+        let node = &mut self.nodes[from as usize];
+        if node.reached == self.round {
+            if distance >= node.distance {
+                return false;
+            }
+        } else {
+            node.reached = self.round;
+            self.reached.push(from);
+        }
+        node.distance = distance;
+        node.via = edge;
+        if distance < width {
+            // Reduced by the potentials, every edge is non-negative; see `Solution::potential`.
+            let key = distance - node.potential;
+            self.queue.push(key, from);
+        }
+        false
     }
 
     /// C lies on a cycle shorter than the width of its link. If a node on the way round comes before C, then knowing
     /// C is needed before C happens: a negative cycle.
     fn negative_from_contingent(&mut self, link: u32) -> Result<Option<Vec<Move>>, TooLarge> {
         let source = self.stnu.links[link as usize].contingent;
-        let base = self.potential[source as usize];
-        let mut via = vec![NONE; self.stnu.nodes as usize];
-        self.heap.clear();
-        self.heap.push(source, 0);
-        while let Some((key, node)) = self.heap.pop() {
+        let base = self.node(source).potential;
+        let mut via = vec![NONE; self.nodes.len()];
+        let mut done = vec![false; self.nodes.len()];
+        let mut keys = vec![i64::MAX; self.nodes.len()];
+        self.queue.restart(0);
+        self.queue.push(0, source);
+        while let Some((key, node)) = self.queue.pop() {
+            if std::mem::replace(&mut done[node as usize], true) {
+                continue;
+            }
             // key = distance from C, reduced: distance + potential(node) - potential(C).
-            let distance = key - self.potential[node as usize] + base;
+            let distance = key - self.node(node).potential + base;
             if distance < 0 {
                 let mut moves: Vec<Move> = Vec::new();
                 let mut at = node;
@@ -378,11 +450,13 @@ impl<'a> Search<'a> {
             }
             let mut relax = |search: &mut Search<'a>, edge: EdgeId| -> Result<(), TooLarge> {
                 let Edge { to, weight, .. } = search.edges[edge as usize];
-                if to != source && search.expanded[to as usize] == search.round {
-                    let reduced =
-                        add(weight, search.potential[to as usize])? - search.potential[node as usize];
-                    if search.heap.push(to, add(key, reduced)?) {
+                if to != source && search.node(to).expanded == search.round {
+                    let reduced = add(weight, search.node(to).potential)? - search.node(node).potential;
+                    let key = add(key, reduced)?;
+                    if key < keys[to as usize] {
+                        keys[to as usize] = key;
                         via[to as usize] = edge;
+                        search.queue.push(key, to);
                     }
                 }
                 Ok(())
@@ -407,13 +481,13 @@ impl<'a> Search<'a> {
     fn derive(&mut self, link: u32) -> Result<Found, TooLarge> {
         let here = self.stnu.links[link as usize];
         let activation = here.activation;
-        self.heap.clear();
-        let mut improved_by: Vec<(u32, EdgeId)> = Vec::new();
+        self.improved.clear();
         for at in 0..self.reached.len() {
             let node = self.reached[at];
-            let weight = add(self.distance[node as usize], -here.upper)?;
-            if self.expanded[node as usize] == self.round {
-                if node != here.contingent && self.ending[node as usize] == NONE {
+            let Node { distance, expanded, ending, potential, .. } = *self.node(node);
+            let weight = add(distance, -here.upper)?;
+            if expanded == self.round {
+                if node != here.contingent && ending == NONE {
                     self.waits.push(Wait { waiter: node, link, weight });
                 }
                 continue;
@@ -435,60 +509,80 @@ impl<'a> Search<'a> {
             self.edges.push(Edge { from: node, to: activation, weight });
             self.before_in.push(std::mem::replace(&mut self.derived_in[activation as usize], edge));
             self.before_out.push(std::mem::replace(&mut self.derived_out[node as usize], edge));
-            let change = add(weight, self.potential[activation as usize])? - self.potential[node as usize];
-            if change < 0 {
-                improved_by.push((node, edge));
+            if add(weight, self.node(activation).potential)? < potential {
+                self.improved.push((node, edge));
             }
         }
-        self.repair_potential(activation, &improved_by)
+        self.repair_potential(activation)
     }
 
     /// Lowers the potentials until they fit the new edges into `activation`; a negative cycle if that never ends.
     ///
     /// Largest change first, every node changes once: S. Cotton, O. Maler, *Fast and flexible difference constraint
     /// propagation for DPLL(T)*, 2006.
-    fn repair_potential(&mut self, activation: u32, new: &[(u32, EdgeId)]) -> Result<Found, TooLarge> {
-        for &(node, edge) in new {
-            let change = self.edges[edge as usize].weight + self.potential[activation as usize]
-                - self.potential[node as usize];
-            if self.heap.push(node, change) {
-                self.via[node as usize] = edge;
-            }
+    fn repair_potential(&mut self, activation: u32) -> Result<Found, TooLarge> {
+        if self.improved.is_empty() {
+            return Ok(Found::Done);
         }
-        while let Some((change, node)) = self.heap.pop() {
-            self.potential[node as usize] = add(self.potential[node as usize], change)?;
-            let potential = self.potential[node as usize];
+        let potential = self.node(activation).potential;
+        // From here on `distance` is the change a node is queued for, and `expanded` says that it is made.
+        self.round += 1;
+        self.queue.restart(-2 * LIMIT);
+        for at in 0..self.improved.len() {
+            let (node, edge) = self.improved[at];
+            let weight = self.edges[edge as usize].weight;
+            self.lower_potential(activation, node, edge, weight + potential);
+        }
+        while let Some((change, node)) = self.queue.pop() {
+            if self.node(node).expanded == self.round {
+                continue;
+            }
+            self.nodes[node as usize].expanded = self.round;
+            let potential = within_limit(self.node(node).potential + change)?;
+            self.nodes[node as usize].potential = potential;
             let mut closes = None;
-            let mut relax = |search: &mut Search<'a>, edge: EdgeId| -> Result<(), TooLarge> {
-                let Edge { from, weight, .. } = search.edges[edge as usize];
-                let change = add(weight, potential)? - search.potential[from as usize];
-                if change < 0 {
-                    if from == activation {
-                        closes = Some(edge);
-                    } else if search.heap.push(from, change) {
-                        search.via[from as usize] = edge;
-                    }
-                }
-                Ok(())
-            };
-            for at in 0..self.incoming.of(node).len() {
-                relax(self, self.incoming.of(node)[at])?;
+            for at in incoming_of(&self.incoming_at, node) {
+                let Incoming { from, edge, weight } = self.incoming[at];
+                closes = closes.or(self.lower_potential(activation, from, edge, weight + potential));
             }
             if let Some(lower) = self.lower_into(node) {
-                relax(self, lower)?;
+                let Edge { from, weight, .. } = self.edges[lower as usize];
+                closes = closes.or(self.lower_potential(activation, from, lower, weight + potential));
             }
             let mut edge = self.derived_in[node as usize];
             while edge != NONE {
-                relax(self, edge)?;
+                let Edge { from, weight, .. } = self.edges[edge as usize];
+                closes = closes.or(self.lower_potential(activation, from, edge, weight + potential));
                 edge = self.before_in[edge as usize - self.derived_from];
             }
             if let Some(edge) = closes {
                 let mut cycle = vec![Move::Along(edge)];
-                cycle.extend(self.walk(node, activation, &self.via));
+                cycle.extend(self.walk(node, activation));
                 return Ok(Found::Cycle(cycle));
             }
         }
         Ok(Found::Done)
+    }
+
+    /// Queues a node whose potential may be no more than `most`, for the sake of this edge. The edge, if the node is
+    /// the activation: its own potential need not change.
+    #[inline(always)]
+    fn lower_potential(&mut self, activation: u32, from: u32, edge: EdgeId, most: i64) -> Option<EdgeId> {
+        let node = &mut self.nodes[from as usize];
+        let change = most - node.potential;
+        if change >= 0 {
+            return None;
+        }
+        if from == activation {
+            return Some(edge);
+        }
+        if node.reached != self.round || change < node.distance {
+            node.reached = self.round;
+            node.distance = change;
+            node.via = edge;
+            self.queue.push(change, from);
+        }
+        None
     }
 
     /// The way of the last backward search from `node` to the contingent event of `link`.
@@ -497,28 +591,22 @@ impl<'a> Search<'a> {
             return Vec::new();
         }
         let end = self.stnu.links[link as usize].contingent;
-        if node == end { Vec::new() } else { self.walk(node, end, &self.via) }
+        if node == end { Vec::new() } else { self.walk(node, end) }
     }
 
     /// The search of the last link in progress has come back to the activation of an earlier one.
     fn close_cycle(&self, progress: &[(u32, Vec<Move>)], again: u32) -> Vec<Move> {
         let mut cycle = Vec::new();
-        let Some(&(last, _)) = progress.last() else { return cycle };
-        cycle.extend(self.way_to_contingent(self.stnu.links[again as usize].activation, last));
-        cycle.push(Move::Upper(last));
-        for (link, way) in progress.iter().rev().skip(1) {
-            if self.state_is_before(progress, *link, again) {
-                break;
+        let from = progress.iter().position(|&(link, _)| link == again).unwrap_or_default();
+        for (at, (link, way)) in progress.iter().enumerate().skip(from).rev() {
+            if at + 1 == progress.len() {
+                cycle.extend(self.way_to_contingent(self.stnu.links[again as usize].activation, *link));
+            } else {
+                cycle.extend(way);
             }
-            cycle.extend(way);
             cycle.push(Move::Upper(*link));
         }
         cycle
-    }
-
-    fn state_is_before(&self, progress: &[(u32, Vec<Move>)], link: u32, again: u32) -> bool {
-        let position = |wanted: u32| progress.iter().position(|&(link, _)| link == wanted);
-        position(link) < position(again)
     }
 
     /// Expands derived edges into what they are made of and counts the steps.

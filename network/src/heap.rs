@@ -67,10 +67,11 @@ impl Heap {
         let entry = self.entries[at];
         while at > 0 {
             let parent = (at - 1) / ARITY;
-            if self.entries[parent] <= entry {
+            let above = self.entries[parent];
+            if !before(entry, above) {
                 break;
             }
-            self.place(at, self.entries[parent]);
+            self.place(at, above);
             at = parent;
         }
         self.place(at, entry);
@@ -80,13 +81,21 @@ impl Heap {
         let entry = self.entries[at];
         loop {
             let first = at * ARITY + 1;
-            let last = (first + ARITY).min(self.entries.len());
-            let Some(child) = (first..last).min_by_key(|&child| self.entries[child]) else { break };
-            if self.entries[child] >= entry {
+            let children = match self.entries.get(first..) {
+                Some(children) if !children.is_empty() => &children[..ARITY.min(children.len())],
+                _ => break,
+            };
+            let (mut child, mut least) = (0, children[0]);
+            for (index, &candidate) in children.iter().enumerate().skip(1) {
+                if before(candidate, least) {
+                    (child, least) = (index, candidate);
+                }
+            }
+            if !before(least, entry) {
                 break;
             }
-            self.place(at, self.entries[child]);
-            at = child;
+            self.place(at, least);
+            at = first + child;
         }
         self.place(at, entry);
     }
@@ -96,6 +105,11 @@ impl Heap {
         self.entries[at] = entry;
         self.position[entry.1 as usize] = at as u32;
     }
+}
+
+#[inline]
+fn before(a: (i64, u32), b: (i64, u32)) -> bool {
+    a.0 < b.0 || a.0 == b.0 && a.1 < b.1
 }
 
 #[cfg(test)]

@@ -64,6 +64,7 @@ pub mod json;
 pub mod merge;
 pub mod model;
 pub mod plain;
+mod radix;
 pub mod reduce;
 pub mod stnu;
 pub mod text;

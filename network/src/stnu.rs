@@ -22,11 +22,19 @@ impl std::fmt::Display for TooLarge {
 
 impl std::error::Error for TooLarge {}
 
+/// A number, if it is within [`LIMIT`].
+///
+/// Hot loops add once to a number that was checked and check the sum when they go on from it: two or three numbers
+/// within the limit cannot overflow.
+#[inline]
+pub(crate) fn within_limit(number: i64) -> Result<i64, TooLarge> {
+    if number.unsigned_abs() > LIMIT as u64 { Err(TooLarge) } else { Ok(number) }
+}
+
 /// `a + b`, if that is within [`LIMIT`]. Both must be.
 #[inline]
 pub(crate) fn add(a: i64, b: i64) -> Result<i64, TooLarge> {
-    let sum = a + b;
-    if sum.unsigned_abs() > LIMIT as u64 { Err(TooLarge) } else { Ok(sum) }
+    within_limit(a + b)
 }
 
 /// An ordinary edge: `to - from <= weight`.

@@ -1,12 +1,16 @@
 //! The program as written to the program with every name resolved and every bound checked.
 
+mod body;
 mod bounds;
 mod calls;
 mod classes;
+mod expression;
 mod names;
 
+use std::collections::BTreeSet;
+
 use crate::Options;
-use crate::ast::{self, Ident, ValueKind};
+use crate::ast::{self, Ident};
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::form::clip;
@@ -14,20 +18,33 @@ use crate::nearest::nearest;
 use crate::parse::DEFAULT_PACKAGE;
 use crate::problem::Problems;
 use crate::source::Span;
-use crate::typed::{Argument, Body, Model, Program, Work};
+use crate::typed::{Body, Model, Program, Work};
 use classes::Classes;
+use expression::{Numbers, Resolver, named_numbers};
 use names::Names;
 
-pub(crate) use bounds::reversed;
+pub(crate) use bounds::{negative, reversed};
 pub(crate) use calls::calls_of;
 
 /// Resolves all names, checks all declarations, and finds the program to start from.
 pub fn analyse(program: &ast::Program, options: &Options, problems: &mut Problems) -> Model {
     let names = Names::new(program, problems);
     let classes = Classes::new(program, &names, problems);
+    let numbers = named_numbers(program, &names, problems);
+    let labels = labels(program);
     let mut model = Model::default();
     for definition in &program.programs {
-        model.programs.push(Analyser { names: &names, program, definition, problems }.program(&classes));
+        let scope = definition.parameters.iter().map(|parameter| parameter.name.clone()).collect();
+        let analyser = Analyser {
+            names: &names,
+            numbers: &numbers,
+            labels: &labels,
+            program,
+            definition,
+            scope,
+            problems,
+        };
+        model.programs.push(analyser.program(&classes));
     }
     calls::check_recursion(&model, problems);
     model.entry = entry(program, &names, options, problems);
@@ -40,21 +57,25 @@ pub fn analyse(program: &ast::Program, options: &Options, problems: &mut Problem
 /// Looks at one program.
 pub(crate) struct Analyser<'a> {
     names: &'a Names,
+    numbers: &'a Numbers,
+    labels: &'a BTreeSet<String>,
     program: &'a ast::Program,
     definition: &'a ast::ControlProgram,
+    /// The parameters, and the variables of `let` and `dotimes` around the place at hand.
+    scope: Vec<String>,
     problems: &'a mut Problems,
 }
 
 impl Analyser<'_> {
-    fn program(&mut self, classes: &Classes<'_>) -> Program {
+    fn program(mut self, classes: &Classes<'_>) -> Program {
         let definition = self.definition;
-        let body: Vec<Body> = definition.body.iter().filter_map(|body| self.body(body)).collect();
+        let body: Vec<Body> = self.bodies(&definition.body);
         let work = match (definition.primitive, definition.body.first()) {
             (true, None) => Work::Primitive(self.timing()),
             (true, Some(first)) => {
                 let message = format!("the primitive program `{}` has a body", clip(&definition.name.name));
                 self.problems.push(
-                    Diagnostic::error(Code::PrimitiveWithBody, span_of(first), message)
+                    Diagnostic::error(Code::PrimitiveWithBody, first.span(), message)
                         .primary("a primitive program has no body")
                         .label(definition.name.span, "declared `(primitive)` here")
                         .help("Take out `(primitive)` if the program consists of others, or the body if it does not."),
@@ -103,95 +124,30 @@ impl Analyser<'_> {
         }
     }
 
-    fn body(&mut self, body: &ast::Body) -> Option<Body> {
-        Some(match body {
-            ast::Body::Call(call) => return self.call(call),
-            ast::Body::Sequence(group) | ast::Body::Parallel(group) => Body::Group {
-                parallel: matches!(body, ast::Body::Parallel(_)),
-                slack: group.slack,
-                body: group.body.iter().filter_map(|body| self.body(body)).collect(),
-                operator: group.operator,
-            },
-            ast::Body::WithTemporalConstraint(within) => Body::Within {
-                bounds: self.bounds(&within.bounds, "the lower bound", "the upper bound"),
-                body: within.body.iter().filter_map(|body| self.body(body)).collect(),
-                operator: within.operator,
-            },
-        })
-    }
-
-    fn call(&mut self, call: &ast::Call) -> Option<Body> {
-        let home = &self.definition.home;
-        let program = match self.names.program(&call.program, home) {
-            Some(program) => program,
-            None => {
-                let span = call.program.span;
-                if self.problems.has_lost_definitions() {
-                    return None;
-                }
-                let problem = match self.problems.wants(span.source) {
-                    true => self.names.unknown_program(&call.program, home),
-                    false => Diagnostic::error(Code::UnknownProgram, span, ""),
-                };
-                self.problems.push(problem);
-                return None;
-            }
-        };
-        let target = &self.program.programs[program];
-        let (wanted, given) = (target.parameters.len(), call.arguments.len());
-        if wanted != given {
-            let count = |n: usize| if n == 1 { "1 argument".to_string() } else { format!("{n} arguments") };
-            let name = clip(&target.name.name);
-            self.problems.push(
-                Diagnostic::error(
-                    Code::WrongArguments,
-                    call.span,
-                    format!("`{name}` takes {}, not {given}", count(wanted)),
-                )
-                .primary(format!("{} here", count(given)))
-                .label(target.name.span, "defined here")
-                .help(format!("Call it as `{}`.", shape(target))),
-            );
+    /// Knows what the names mean in the place at hand.
+    fn resolver(&mut self) -> Resolver<'_> {
+        Resolver {
+            names: self.names,
+            numbers: self.numbers,
+            program: self.program,
+            home: &self.definition.home,
+            scope: &self.scope,
+            problems: self.problems,
         }
-        let arguments = call.arguments.iter().map(|value| self.argument(value)).collect();
-        Some(Body::Call { program, arguments, span: call.span })
     }
+}
 
-    fn argument(&mut self, value: &ast::Value) -> Argument {
-        if let ValueKind::Name(package, name) = &value.kind {
-            let ident = Ident { package: package.clone(), name: name.clone(), span: value.span };
-            if let Some(index) = self.parameter(&ident) {
-                return Argument::Parameter(index);
-            }
-            if let Some(number) = self.names.number(&ident, &self.definition.home) {
-                if let ast::AmountKind::Number(number) = self.program.parameters[number].value.kind {
-                    return Argument::Value(ast::Value { kind: ValueKind::Number(number), span: value.span });
-                }
-            } else {
-                self.unknown_name(&ident);
-            }
+/// All names that a `label` gives, in any program.
+fn labels(program: &ast::Program) -> BTreeSet<String> {
+    let mut labels = BTreeSet::new();
+    let mut open: Vec<&ast::Body> = program.programs.iter().flat_map(|program| &program.body).collect();
+    while let Some(body) = open.pop() {
+        if let ast::Body::Label(labelled) = body {
+            labels.insert(labelled.name.name.clone());
         }
-        Argument::Value(value.clone())
+        open.extend(body.parts());
     }
-
-    /// The place of a parameter of this program.
-    fn parameter(&self, ident: &Ident) -> Option<usize> {
-        let mine = |parameter: &Ident| ident.package.is_none() && parameter.name == ident.name;
-        self.definition.parameters.iter().position(mine)
-    }
-
-    fn unknown_name(&mut self, ident: &Ident) {
-        let parameters = self.definition.parameters.iter().map(|p| p.name.as_str());
-        let numbers = self.program.parameters.iter().map(|p| p.name.name.as_str());
-        let help =
-            nearest(&ident.name, parameters.chain(numbers)).map(|near| format!("Did you mean `{near}`?"));
-        self.problems.push(
-            Diagnostic::error(Code::UnknownName, ident.span, format!("nothing is called `{}`", clip(&ident.name)))
-                .primary("neither a parameter of this program nor a named number")
-                .help("A value is a number, a string, `t`, `nil`, a parameter, or a name from `defparameter`. A symbol is quoted: `'name`.")
-                .maybe_help(help),
-        );
-    }
+    labels
 }
 
 /// Finds the program to start from.
@@ -283,17 +239,4 @@ fn entry(program: &ast::Program, names: &Names, options: &Options, problems: &mu
         );
     }
     found
-}
-
-fn shape(target: &ast::ControlProgram) -> String {
-    let words = std::iter::once(&target.name).chain(&target.parameters).map(|ident| clip(&ident.name));
-    format!("({})", words.collect::<Vec<_>>().join(" "))
-}
-
-fn span_of(body: &ast::Body) -> Span {
-    match body {
-        ast::Body::Call(call) => call.span,
-        ast::Body::Sequence(group) | ast::Body::Parallel(group) => group.span,
-        ast::Body::WithTemporalConstraint(within) => within.span,
-    }
 }

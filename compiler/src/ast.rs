@@ -1,8 +1,10 @@
 //! The program as written: names are not resolved yet. Serialised for `--emit ast`, without the places.
 
 use kirk_network::Duration;
+use serde::ser::SerializeSeq;
 use serde::{Serialize, Serializer};
 
+use crate::calculate::Operator;
 use crate::source::Span;
 
 /// All definitions, in source order.
@@ -167,8 +169,12 @@ pub enum AmountKind {
     Number(Duration),
     /// `:infinity`.
     Infinite,
-    /// A named number or a parameter.
+    /// A named number, a parameter, or a name from `let` or `dotimes`.
     Named(Ident),
+    /// A unit of so many microseconds: `(minutes x)`.
+    Unit(&'static str, i64, Box<Amount>),
+    /// `(+ x 1)` and the like.
+    Calculation(Operator, Vec<Amount>),
     /// Something that has been reported.
     Error,
 }
@@ -185,6 +191,16 @@ pub enum Body {
     Parallel(Group),
     /// `(with-temporal-constraint ...)`.
     WithTemporalConstraint(Within),
+    /// `(delay ...)`.
+    Delay(Wait),
+    /// `(let ...)`.
+    Let(Let),
+    /// `(dotimes ...)`.
+    Dotimes(Dotimes),
+    /// `(label ...)`.
+    Label(Labelled),
+    /// `(between ...)`.
+    Between(Box<Between>),
 }
 
 /// `(name arg...)`.
@@ -193,7 +209,109 @@ pub struct Call {
     /// The program called.
     pub program: Ident,
     /// What its parameters stand for.
-    pub arguments: Vec<Value>,
+    pub arguments: Vec<Argument>,
+    /// The form.
+    #[serde(skip)]
+    pub span: Span,
+}
+
+/// What a parameter or a name of `let` stands for.
+#[derive(Clone, Debug, Serialize)]
+#[serde(untagged)]
+pub enum Argument {
+    /// A value as it is written.
+    Value(Value),
+    /// A number to calculate.
+    Amount(Amount),
+}
+
+/// `(delay 5 10)`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Wait {
+    /// How long.
+    pub bounds: Bounds,
+    /// The form.
+    #[serde(skip)]
+    pub span: Span,
+}
+
+/// `(let ((x 5)) body...)`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Let {
+    /// The names and what they stand for.
+    pub bindings: Vec<(Ident, Argument)>,
+    /// True for `let*`: each name is known to those after it.
+    pub sequential: bool,
+    /// The body.
+    pub body: Vec<Body>,
+    /// The operator.
+    #[serde(skip)]
+    pub operator: Span,
+    /// The form.
+    #[serde(skip)]
+    pub span: Span,
+}
+
+/// `(dotimes (i n) body...)`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Dotimes {
+    /// The name that counts from 0.
+    pub variable: Ident,
+    /// How many times.
+    pub count: Amount,
+    /// The body.
+    pub body: Vec<Body>,
+    /// The operator.
+    #[serde(skip)]
+    pub operator: Span,
+    /// The form.
+    #[serde(skip)]
+    pub span: Span,
+}
+
+/// `(label x form)`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Labelled {
+    /// The name.
+    pub name: Ident,
+    /// What distinguishes it from others of the name: `(label (confirm i j) ...)`.
+    pub arguments: Vec<Argument>,
+    /// What it names.
+    pub body: Vec<Body>,
+    /// The operator.
+    #[serde(skip)]
+    pub operator: Span,
+    /// The form.
+    #[serde(skip)]
+    pub span: Span,
+}
+
+/// `(between (end a) (start b) (simple-temporal ...))`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Between {
+    /// Where the interval begins.
+    pub from: EventOf,
+    /// Where it ends.
+    pub to: EventOf,
+    /// From the one to the other.
+    pub bounds: Bounds,
+    /// The operator.
+    #[serde(skip)]
+    pub operator: Span,
+    /// The form.
+    #[serde(skip)]
+    pub span: Span,
+}
+
+/// `(start x)`, `(end (confirm i j))`.
+#[derive(Clone, Debug, Serialize)]
+pub struct EventOf {
+    /// True for the end.
+    pub end: bool,
+    /// A label, or the name of a program.
+    pub name: Ident,
+    /// Its arguments, if any are written.
+    pub arguments: Option<Vec<Argument>>,
     /// The form.
     #[serde(skip)]
     pub span: Span,
@@ -288,6 +406,44 @@ pub struct SlotOf {
     pub object: Value,
 }
 
+impl Argument {
+    /// Where it is written.
+    pub fn span(&self) -> Span {
+        match self {
+            Argument::Value(value) => value.span,
+            Argument::Amount(amount) => amount.span,
+        }
+    }
+}
+
+impl Body {
+    /// Where it is written.
+    pub fn span(&self) -> Span {
+        match self {
+            Body::Call(call) => call.span,
+            Body::Sequence(group) | Body::Parallel(group) => group.span,
+            Body::WithTemporalConstraint(within) => within.span,
+            Body::Delay(wait) => wait.span,
+            Body::Let(binding) => binding.span,
+            Body::Dotimes(dotimes) => dotimes.span,
+            Body::Label(labelled) => labelled.span,
+            Body::Between(between) => between.span,
+        }
+    }
+
+    /// The forms inside it.
+    pub fn parts(&self) -> &[Body] {
+        match self {
+            Body::Sequence(group) | Body::Parallel(group) => &group.body,
+            Body::WithTemporalConstraint(within) => &within.body,
+            Body::Let(binding) => &binding.body,
+            Body::Dotimes(dotimes) => &dotimes.body,
+            Body::Label(labelled) => &labelled.body,
+            Body::Call(_) | Body::Delay(_) | Body::Between(_) => &[],
+        }
+    }
+}
+
 impl Serialize for Ident {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match &self.package {
@@ -303,6 +459,15 @@ impl Serialize for Amount {
             AmountKind::Number(duration) => seconds(*duration, serializer),
             AmountKind::Infinite => serializer.serialize_str(":infinity"),
             AmountKind::Named(name) => name.serialize(serializer),
+            AmountKind::Unit(name, _, amount) => (name, amount).serialize(serializer),
+            AmountKind::Calculation(operator, amounts) => {
+                let mut list = serializer.serialize_seq(Some(amounts.len() + 1))?;
+                list.serialize_element(operator)?;
+                for amount in amounts {
+                    list.serialize_element(amount)?;
+                }
+                list.end()
+            }
             AmountKind::Error => serializer.serialize_str("?"),
         }
     }

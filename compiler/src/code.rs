@@ -66,7 +66,6 @@ codes! {
     PrimitiveWithBody = 207, "a primitive program with a body", forms::PRIMITIVE_WITH_BODY;
     NoBody = 208, "a program that does nothing", forms::NO_BODY;
     DurationOfBody = 209, "a duration declared for a program with a body", forms::DURATION_OF_BODY;
-    NotYet = 210, "a form kirk does not have yet", forms::NOT_YET;
     UnknownSlotOption = 211, "not a slot option kirk knows", forms::UNKNOWN_SLOT_OPTION;
     UnknownProgram = 301, "a program that is not defined", names::UNKNOWN_PROGRAM;
     DefinedTwice = 302, "a name is defined twice", names::DEFINED_TWICE;
@@ -79,6 +78,8 @@ codes! {
     TooManyEpisodes = 309, "the program unfolds to too many episodes", names::TOO_MANY_EPISODES;
     CallsTooDeep = 310, "the program unfolds too deeply", names::CALLS_TOO_DEEP;
     FreeParameters = 311, "the program to start from has parameters", names::FREE_PARAMETERS;
+    UnknownLabel = 312, "a label that is not there", names::UNKNOWN_LABEL;
+    AmbiguousLabel = 313, "a label or a name that means several occurrences", names::AMBIGUOUS_LABEL;
     NotANumber = 401, "a bound that is not a number", bounds::NOT_A_NUMBER;
     Negative = 402, "a negative bound", bounds::NEGATIVE;
     LowerAboveUpper = 403, "the lower bound is above the upper bound", bounds::LOWER_ABOVE_UPPER;
@@ -90,6 +91,8 @@ codes! {
     InfiniteLower = 409, "an infinite lower bound", bounds::INFINITE_LOWER;
     UnknownUnit = 410, "not a unit of time", bounds::UNKNOWN_UNIT;
     NoBounds = 411, "a constraint that allows everything", bounds::NO_BOUNDS;
+    BadCount = 412, "not a number of repetitions", bounds::BAD_COUNT;
+    SameEvent = 413, "a constraint between an event and itself", bounds::SAME_EVENT;
     UnknownPackage = 501, "a package that is not defined", worlds::UNKNOWN_PACKAGE;
     PackageNotChosen = 502, "several packages and none chosen", worlds::PACKAGE_NOT_CHOSEN;
     UnknownClass = 503, "a class that is not defined", worlds::UNKNOWN_CLASS;

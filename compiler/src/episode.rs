@@ -37,9 +37,15 @@ pub struct Episode {
     /// What it brings about.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub effect: Option<Box<Condition>>,
+    /// The names a `label` gives it, as far as nothing else has them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub labels: Vec<String>,
     /// Its parts, in source order.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub parts: Vec<Episode>,
+    /// Of the outermost episode: what `between` says, anywhere in the program.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub constraints: Vec<Constraint>,
     /// The call or the operator.
     #[serde(skip)]
     pub span: Span,
@@ -59,6 +65,28 @@ pub enum Kind {
     Parallel,
     /// `with-temporal-constraint`.
     WithTemporalConstraint,
+    /// `delay`.
+    Delay,
+}
+
+/// What `between` says.
+#[derive(Clone, Debug, Serialize)]
+pub struct Constraint {
+    /// Where the interval begins.
+    pub from: EventOf,
+    /// Where it ends.
+    pub to: EventOf,
+    /// From the one to the other.
+    pub interval: Interval,
+}
+
+/// The start or the end of an episode.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct EventOf {
+    /// The name of the episode.
+    pub episode: String,
+    /// True for the end.
+    pub end: bool,
 }
 
 /// An interval of durations.
@@ -84,6 +112,7 @@ impl Kind {
             Kind::Sequence => "sequence",
             Kind::Parallel => "parallel",
             Kind::WithTemporalConstraint => "with-temporal-constraint",
+            Kind::Delay => "delay",
         }
     }
 }

@@ -1,20 +1,23 @@
 //! Unfolds the program to start from: every call becomes an episode of its own, with a name of its own.
 
+mod interval;
+mod labels;
 mod limits;
 mod name;
+mod scope;
 
 use kirk_network::{Bound, Duration};
 
-use crate::analyse::reversed;
-use crate::ast::{Condition, Value, ValueKind};
+use crate::ast::{Condition, Ident, Value, ValueKind};
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::episode::{Episode, Interval, Kind};
 use crate::form::clip;
 use crate::problem::Problems;
 use crate::source::Span;
-use crate::typed::{Amount, AmountValue, Argument, Body, Bounds, Model, Program, Timing, Work};
+use crate::typed::{Between, Body, EventOf, Expression, Model, Program, Timing, Work};
 use name::Occurrences;
+use scope::{Named, Scopes, Target};
 
 pub use limits::{MAX_DEPTH, MAX_EPISODES};
 
@@ -34,137 +37,286 @@ pub fn expand(model: &Model, problems: &mut Problems) -> Option<Episode> {
                 format!("`{}` is started without arguments", clip(&program.name.name)),
             )
             .primary(format!("nothing is known about {}", names.join(" and ")))
-            .help("The times do not depend on them. To start with arguments, call it from a program `main`."),
+            .help("That does no harm as long as no time depends on them. To start with arguments, call it from a program `main`."),
         );
     }
     let free =
         |name: &crate::ast::Ident| Value { kind: ValueKind::Name(None, name.name.clone()), span: name.span };
     let arguments = program.parameters.iter().map(free).collect();
-    let mut expander = Expander { model, occurrences: Occurrences::new(model), problems };
-    Some(expander.occurrence(entry, arguments, program.name.span))
+    let mut expander = Expander {
+        model,
+        occurrences: Occurrences::new(model),
+        scopes: Scopes::default(),
+        betweens: Vec::new(),
+        episodes: 0,
+        repetitions: 0,
+        exhausted: false,
+        problems,
+    };
+    let mut root = expander.occurrence(entry, arguments, program.name.span, None);
+    labels::give_names(&mut root, &expander.scopes);
+    expander.constrain(&mut root);
+    Some(root)
 }
 
 struct Expander<'a> {
     model: &'a Model,
     occurrences: Occurrences,
+    scopes: Scopes,
+    betweens: Vec<Pending<'a>>,
+    /// How many episodes and repetitions there are so far.
+    episodes: u64,
+    repetitions: u64,
+    /// True if there are too many, which has been reported: nothing more is unfolded.
+    exhausted: bool,
     problems: &'a mut Problems,
 }
 
-/// The program a body belongs to, as it was called.
-struct Caller<'a> {
+/// Where in a program the unfolding is, and how the program was called.
+struct Place<'a> {
     name: &'a str,
     program: &'a Program,
-    arguments: &'a [Value],
     call: Span,
     internal: u32,
+    scope: usize,
+    /// The values of the parameters, and of the names of `let` and `dotimes` around the place.
+    variables: Vec<Value>,
 }
 
-impl Expander<'_> {
-    fn occurrence(&mut self, index: usize, arguments: Vec<Value>, span: Span) -> Episode {
+/// A `between` whose events are looked up when all episodes are known.
+struct Pending<'a> {
+    scope: usize,
+    from: (&'a EventOf, Option<Vec<Value>>),
+    to: (&'a EventOf, Option<Vec<Value>>),
+    interval: Interval,
+}
+
+impl<'a> Expander<'a> {
+    #[inline(never)]
+    fn occurrence(
+        &mut self,
+        index: usize,
+        arguments: Vec<Value>,
+        span: Span,
+        outside: Option<usize>,
+    ) -> Episode {
         let program = &self.model.programs[index];
-        let mut episode = blank(self.occurrences.of(&program.name.name), Kind::Program, span);
+        let name = self.occurrences.of(&program.name.name);
+        let mut episode = self.blank(name.clone(), Kind::Program, span);
         episode.requires = program.requires.as_ref().map(|c| Box::new(substitute(c, program, &arguments)));
         episode.effect = program.effect.as_ref().map(|c| Box::new(substitute(c, program, &arguments)));
-        let name = episode.name.clone();
-        let mut caller = Caller { name: &name, program, arguments: &arguments, call: span, internal: 0 };
-        match &program.work {
-            Work::Primitive(timing) => self.primitive(&mut episode, timing, &caller),
-            Work::Body(body) => episode.parts = self.parts(body, &mut caller),
+        episode.arguments = arguments.iter().map(|value| value.kind.clone()).collect();
+        if let Some(scope) = outside {
+            let target = Target::Program(index);
+            let arguments = episode.arguments.clone();
+            let named = Named { scope, target, arguments, episode: episode.name.clone(), span };
+            self.scopes.add(named, self.problems);
         }
-        episode.arguments = arguments.into_iter().map(|value| value.kind).collect();
+        let scope = self.scopes.open(outside);
+        let mut place = Place { name: &name, program, call: span, internal: 0, scope, variables: arguments };
+        match &program.work {
+            Work::Primitive(timing) => self.primitive(&mut episode, timing, &place),
+            Work::Body(body) => episode.parts = self.parts(body, &mut place),
+        }
+        self.scopes.close(scope);
         episode
     }
 
-    fn primitive(&mut self, episode: &mut Episode, timing: &Timing, caller: &Caller<'_>) {
+    fn primitive(&mut self, episode: &mut Episode, timing: &Timing, place: &Place<'_>) {
         episode.kind = Kind::Primitive;
-        episode.duration = Some(self.interval(timing.bounds, caller, "the lower bound", "the upper bound"));
+        episode.duration = Some(self.interval(&timing.bounds, place, "the lower bound", "the upper bound"));
         episode.contingent = timing.contingent;
         if timing.contingent {
-            let delay = self.interval(
-                timing.delay,
-                caller,
-                "the shortest observation delay",
-                "the longest observation delay",
-            );
+            if episode.duration.as_ref().is_some_and(|duration| duration.upper == Bound::Infinite) {
+                let name = clip(&place.program.name.name);
+                let message = format!("the contingent duration of `{name}` has no upper bound");
+                self.problems.push(
+                    Diagnostic::error(Code::ContingentUnbounded, timing.bounds.upper.span, message)
+                        .primary("Nature could take forever")
+                        .label(place.call, "with the arguments of this call"),
+                );
+            }
+            let (least, most) = ("the shortest observation delay", "the longest observation delay");
+            let delay = self.interval(&timing.delay, place, least, most);
             if delay.lower != Duration::ZERO || delay.upper != Bound::Finite(Duration::ZERO) {
                 episode.delay = Some(delay);
             }
         }
     }
 
-    fn parts(&mut self, body: &[Body], caller: &mut Caller<'_>) -> Vec<Episode> {
-        body.iter().map(|part| self.part(part, caller)).collect()
+    fn parts(&mut self, body: &'a [Body], place: &mut Place<'_>) -> Vec<Episode> {
+        let mut parts = Vec::with_capacity(body.len());
+        self.unfold(body, place, &mut parts);
+        parts
     }
 
-    fn part(&mut self, body: &Body, caller: &mut Caller<'_>) -> Episode {
-        match body {
-            Body::Call { program, arguments, span } => {
-                let arguments = arguments.iter().map(|argument| match argument {
-                    Argument::Value(value) => value.clone(),
-                    Argument::Parameter(index) => caller.arguments[*index].clone(),
-                });
-                self.occurrence(*program, arguments.collect(), *span)
+    /// Adds what the forms of a body unfold to: one episode for most, none for `between`, several for `dotimes` and `let`.
+    fn unfold(&mut self, body: &'a [Body], place: &mut Place<'_>, parts: &mut Vec<Episode>) {
+        for form in body {
+            if self.exhausted {
+                return;
             }
+            match form {
+                Body::Call { program, arguments, span } => {
+                    let arguments = self.values(arguments, place);
+                    parts.push(self.occurrence(*program, arguments, *span, Some(place.scope)));
+                }
+                Body::Group { .. } | Body::Within { .. } | Body::Delay { .. } => {
+                    parts.push(self.form(form, place));
+                }
+                Body::Let { values, body } => self.binding(values, body, place, parts),
+                Body::Repeat { count, variable, body, operator } => {
+                    let count = self.count(count, place);
+                    self.repeat(count, (*variable, *operator), body, place, parts);
+                }
+                Body::Label { name, arguments, body, operator } => {
+                    let arguments = self.values(arguments, place);
+                    parts.push(self.label(name, arguments, body, *operator, place));
+                }
+                Body::Between(between) => self.between(between, place),
+            }
+        }
+    }
+
+    /// An episode for a form no user gave a name.
+    #[inline(never)]
+    fn form(&mut self, form: &'a Body, place: &mut Place<'_>) -> Episode {
+        match form {
             Body::Group { parallel, slack, body, operator } => {
                 let kind = if *parallel { Kind::Parallel } else { Kind::Sequence };
-                let mut episode = self.internal(kind, *operator, caller);
+                let mut episode = self.internal(kind, *operator, place);
                 episode.slack = Some(*slack);
-                episode.parts = self.parts(body, caller);
+                episode.parts = self.parts(body, place);
                 episode
             }
             Body::Within { bounds, body, operator } => {
-                let mut episode = self.internal(Kind::WithTemporalConstraint, *operator, caller);
-                episode.duration = Some(self.interval(*bounds, caller, "the lower bound", "the upper bound"));
-                episode.parts = self.parts(body, caller);
+                let mut episode = self.internal(Kind::WithTemporalConstraint, *operator, place);
+                episode.duration = Some(self.interval(bounds, place, "the lower bound", "the upper bound"));
+                episode.parts = self.parts(body, place);
                 episode
             }
+            Body::Delay { bounds, span } => {
+                let mut episode = self.internal(Kind::Delay, *span, place);
+                episode.duration =
+                    Some(self.interval(bounds, place, "the shortest wait", "the longest wait"));
+                episode
+            }
+            _ => self.internal(Kind::Sequence, place.call, place),
         }
     }
 
-    fn internal(&mut self, kind: Kind, span: Span, caller: &mut Caller<'_>) -> Episode {
-        let name = self.occurrences.inside(caller.name, &mut caller.internal);
-        Episode { internal: true, ..blank(name, kind, span) }
+    #[inline(never)]
+    fn binding(
+        &mut self,
+        values: &[Expression],
+        body: &'a [Body],
+        place: &mut Place<'_>,
+        parts: &mut Vec<Episode>,
+    ) {
+        let values = self.values(values, place);
+        let outside = place.variables.len();
+        place.variables.extend(values);
+        self.unfold(body, place, parts);
+        place.variables.truncate(outside);
     }
 
-    /// The numbers of an interval; parameters are replaced by what the program was called with, and checked.
-    fn interval(&mut self, bounds: Bounds, caller: &Caller<'_>, low: &str, high: &str) -> Interval {
-        let lower = self.bound(bounds.lower, caller, low).finite().unwrap_or(Duration::ZERO);
-        let mut upper = self.bound(bounds.upper, caller, high);
-        if let Bound::Finite(most) = upper
-            && let Some(problem) = reversed(lower, most, bounds, low, high)
-        {
-            self.problems.push(problem.label(caller.call, "with the arguments of this call"));
-            upper = Bound::Finite(lower);
+    #[inline(never)]
+    fn repeat(
+        &mut self,
+        count: u64,
+        (variable, operator): (Span, Span),
+        body: &'a [Body],
+        place: &mut Place<'_>,
+        parts: &mut Vec<Episode>,
+    ) {
+        let (outside, around) = (place.variables.len(), place.scope);
+        for index in 0..count {
+            self.repetitions += 1;
+            if self.repetitions > MAX_EPISODES {
+                self.give_up(operator, "repetitions", Some(place.call));
+            }
+            if self.exhausted {
+                break;
+            }
+            place.scope = self.scopes.open(Some(around));
+            let number = i64::try_from(index).unwrap_or(i64::MAX);
+            let kind = ValueKind::Number(Duration::from_secs(number));
+            place.variables.push(Value { kind, span: variable });
+            self.unfold(body, place, parts);
+            place.variables.truncate(outside);
+            self.scopes.close(place.scope);
         }
-        let (lower_span, upper_span) = (bounds.lower.span, bounds.upper.span);
-        Interval { lower, upper, lower_span, upper_span, span: bounds.span }
+        place.scope = around;
     }
 
-    fn bound(&mut self, amount: Amount, caller: &Caller<'_>, what: &str) -> Bound {
-        let index = match amount.value {
-            AmountValue::Known(bound) => return bound,
-            AmountValue::Error => return Bound::Finite(Duration::ZERO),
-            AmountValue::Parameter(index) => index,
-        };
-        let parameter = clip(&caller.program.parameters[index].name);
-        let value = &caller.arguments[index];
-        let (code, message) = match &value.kind {
-            ValueKind::Number(number) if *number >= Duration::ZERO => return Bound::Finite(*number),
-            ValueKind::Number(number) => {
-                (Code::Negative, format!("`{parameter}` is {number} here, which is negative"))
+    #[inline(never)]
+    fn label(
+        &mut self,
+        name: &Ident,
+        arguments: Vec<Value>,
+        body: &'a [Body],
+        operator: Span,
+        place: &mut Place<'_>,
+    ) -> Episode {
+        let mut parts = self.parts(body, place);
+        let episode = match parts.pop() {
+            Some(only) if parts.is_empty() => only,
+            last => {
+                parts.extend(last);
+                let episode = self.internal(Kind::Sequence, operator, place);
+                Episode { slack: Some(false), parts, ..episode }
             }
-            ValueKind::Name(..) => {
-                (Code::NotANumber, format!("nothing says what `{parameter}` is, so {what} is unknown"))
-            }
-            _ => (Code::NotANumber, format!("`{parameter}` is not a number here, so it cannot be {what}")),
         };
-        self.problems.push(
-            Diagnostic::error(code, value.span, message)
-                .primary("a duration was expected")
-                .label(amount.span, format!("`{parameter}` is used as {what} here"))
-                .help("Call the program with a number of seconds."),
-        );
-        Bound::Finite(Duration::ZERO)
+        let named = Named {
+            scope: place.scope,
+            target: Target::Label(name.name.clone()),
+            arguments: arguments.into_iter().map(|value| value.kind).collect(),
+            episode: episode.name.clone(),
+            span: name.span,
+        };
+        self.scopes.add(named, self.problems);
+        episode
+    }
+
+    #[inline(never)]
+    fn between(&mut self, between: &'a Between, place: &Place<'_>) {
+        let Between { from, to, bounds } = between;
+        self.repetitions += 1;
+        if self.repetitions > MAX_EPISODES {
+            self.give_up(from.span, "constraints", Some(place.call));
+        }
+        let interval = self.signed_interval(bounds, place, "the lower bound", "the upper bound");
+        let mut arguments =
+            |event: &EventOf| event.arguments.as_ref().map(|arguments| self.values(arguments, place));
+        let (from, to) = ((from, arguments(from)), (to, arguments(to)));
+        self.betweens.push(Pending { scope: place.scope, from, to, interval });
+    }
+
+    fn internal(&mut self, kind: Kind, span: Span, place: &mut Place<'_>) -> Episode {
+        let name = self.occurrences.inside(place.name, &mut place.internal);
+        Episode { internal: true, ..self.blank(name, kind, span) }
+    }
+
+    fn blank(&mut self, name: String, kind: Kind, span: Span) -> Episode {
+        self.episodes += 1;
+        if self.episodes > MAX_EPISODES {
+            self.give_up(span, "episodes", None);
+        }
+        blank(name, kind, span)
+    }
+
+    fn give_up(&mut self, span: Span, what: &str, call: Option<Span>) {
+        if std::mem::replace(&mut self.exhausted, true) {
+            return;
+        }
+        let message = format!("the mission unfolds to more than {MAX_EPISODES} {what}");
+        let problem = Diagnostic::error(Code::TooManyEpisodes, span, message)
+            .primary("this is one too many")
+            .help("Every call is an episode of its own, and every repetition of a `dotimes` is unfolded.");
+        self.problems.push(match call {
+            Some(call) => problem.label(call, "with the arguments of this call"),
+            None => problem,
+        });
     }
 }
 
@@ -180,7 +332,9 @@ fn blank(name: String, kind: Kind, span: Span) -> Episode {
         delay: None,
         requires: None,
         effect: None,
+        labels: Vec::new(),
         parts: Vec::new(),
+        constraints: Vec::new(),
         span,
     }
 }

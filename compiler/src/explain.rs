@@ -173,6 +173,7 @@ fn place(origin: &Origin, which: usize) -> Span {
 fn upper(origin: &Origin, bound: Duration) -> String {
     match origin.kind {
         OriginKind::Constraint => format!("at most {bound} s from start to end of this"),
+        OriginKind::Between => format!("at most {bound} s {}", origin.subject),
         OriginKind::Duration | OriginKind::Contingent => {
             format!("{} takes at most {bound} s", origin.subject)
         }
@@ -183,6 +184,7 @@ fn upper(origin: &Origin, bound: Duration) -> String {
 fn lower(origin: &Origin, bound: Duration) -> String {
     match origin.kind {
         OriginKind::Constraint => format!("at least {bound} s from start to end of this"),
+        OriginKind::Between => format!("at least {bound} s {}", origin.subject),
         OriginKind::Duration | OriginKind::Contingent => {
             format!("{} takes at least {bound} s", origin.subject)
         }

@@ -58,13 +58,15 @@
 //! # Deliberately absent
 //!
 //! Files, colours and exit statuses (the command line has them), merging and every verdict (`kirk-network`), planning with
-//! conditions and effects, macros and arithmetic of Lisp.
+//! conditions and effects, macros and functions of Lisp.
 
 pub mod analyse;
 pub mod ast;
+pub mod calculate;
 pub mod code;
 pub mod diagnostic;
 pub mod episode;
+mod evaluate;
 pub mod expand;
 pub mod explain;
 pub mod form;

@@ -1,8 +1,10 @@
 //! Episodes to a delay STNU, and for every constraint of it the place and the words it comes from.
 
+use std::collections::HashMap;
+
 use kirk_network::{Bound, ContingentLink, Delay, Duration, Event, EventId, Name, Network, Requirement};
 
-use crate::episode::{Episode, Interval, Kind};
+use crate::episode::{Constraint, Episode, EventOf, Interval, Kind};
 use crate::source::Span;
 
 /// What a program is compiled to.
@@ -53,6 +55,8 @@ pub enum OriginKind {
     Join,
     /// Two events one after the other.
     Order,
+    /// `between`.
+    Between,
 }
 
 /// Builds the network. `None` only if the tree is not what `expand` makes.
@@ -64,6 +68,7 @@ pub fn lower(root: &Episode) -> Option<Plan> {
         origins: Origins::default(),
     };
     lowering.episode(root);
+    lowering.constraints(root);
     let Lowering { events, requirements, contingents, origins } = lowering;
     let network = Network::new(root.name.clone(), EventId(0), events, requirements, contingents).ok()?;
     Some(Plan { network, origins, entry: root.span })
@@ -76,7 +81,8 @@ struct Lowering {
     origins: Origins,
 }
 
-type Ends = (EventId, EventId);
+/// The start and the end of an episode.
+pub(crate) type Ends = (EventId, EventId);
 
 impl Lowering {
     /// Adds an episode with all its parts; returns its start and its end. Events are numbered in the order in which they
@@ -92,7 +98,7 @@ impl Lowering {
         let subject = subject(episode);
         let slack = episode.slack == Some(true);
         match episode.kind {
-            Kind::Primitive => {}
+            Kind::Primitive | Kind::Delay => {}
             Kind::Parallel => {
                 for &(part, (start, end)) in &parts {
                     let inner = described(part);
@@ -138,7 +144,7 @@ impl Lowering {
                 }
             }
         }
-        if episode.parts.is_empty() && episode.kind != Kind::Primitive {
+        if episode.parts.is_empty() && !matches!(episode.kind, Kind::Primitive | Kind::Delay) {
             self.link(
                 ends.0,
                 ends.1,
@@ -150,9 +156,36 @@ impl Lowering {
         ends
     }
 
+    /// What `between` says.
+    fn constraints(&mut self, root: &Episode) {
+        if root.constraints.is_empty() {
+            return;
+        }
+        let events: HashMap<&str, (&Episode, Ends)> = events_of(root)
+            .into_iter()
+            .map(|(episode, ends)| (episode.name.as_str(), (episode, ends)))
+            .collect();
+        let find = |event: &EventOf| {
+            let (episode, (start, end)) = events.get(event.episode.as_str())?;
+            let words = format!("the {} of {}", if event.end { "end" } else { "start" }, called(episode));
+            Some((if event.end { *end } else { *start }, words))
+        };
+        for Constraint { from, to, interval } in &root.constraints {
+            let (Some((from, before)), Some((to, after))) = (find(from), find(to)) else { continue };
+            let Interval { lower, upper, lower_span, upper_span, span } = *interval;
+            self.requirements.push(Requirement { from, to, lower: Bound::Finite(lower), upper });
+            let subject = format!("from {before} to {after}");
+            let text = format!("{} {subject}", range(interval));
+            let places = [lower_span, upper_span, span, span];
+            self.origins.requirements.push(Origin { span, text, kind: OriginKind::Between, subject, places });
+        }
+    }
+
     fn event(&mut self, episode: &Episode, end: &str) -> EventId {
-        let name = Name { text: format!("{}:{end}", episode.name), internal: episode.internal };
-        self.events.push(Event { names: vec![name] });
+        let own = Name { text: format!("{}:{end}", episode.name), internal: episode.internal };
+        let labels =
+            episode.labels.iter().map(|label| Name { text: format!("{label}:{end}"), internal: false });
+        self.events.push(Event { names: std::iter::once(own).chain(labels).collect() });
         EventId(self.events.len() as u32 - 1)
     }
 
@@ -172,7 +205,9 @@ impl Lowering {
             Bound::Finite(upper) if episode.contingent => upper,
             bound => {
                 let (kind, text) = match episode.kind {
-                    Kind::Primitive => (OriginKind::Duration, format!("{subject} takes {takes}")),
+                    Kind::Primitive | Kind::Delay => {
+                        (OriginKind::Duration, format!("{subject} takes {takes}"))
+                    }
                     _ => (OriginKind::Constraint, format!("this takes {takes} from start to end")),
                 };
                 self.requirements.push(Requirement {
@@ -201,6 +236,39 @@ impl Lowering {
             subject,
             places,
         });
+    }
+}
+
+/// All episodes with their events, in source order, each before its parts.
+pub(crate) fn events_of(root: &Episode) -> Vec<(&Episode, Ends)> {
+    let mut found: Vec<(&Episode, Ends)> = Vec::new();
+    let mut next = 0;
+    let mut number = || {
+        next += 1;
+        EventId(next - 1)
+    };
+    // An episode to enter, or the position of one to leave.
+    let mut open: Vec<Result<&Episode, usize>> = vec![Ok(root)];
+    while let Some(step) = open.pop() {
+        match step {
+            Ok(episode) => {
+                let start = number();
+                open.push(Err(found.len()));
+                found.push((episode, (start, start)));
+                open.extend(episode.parts.iter().rev().map(Ok));
+            }
+            Err(position) => found[position].1.1 = number(),
+        }
+    }
+    found
+}
+
+/// The name a user knows an episode by.
+fn called(episode: &Episode) -> String {
+    match (episode.internal, episode.labels.first()) {
+        (_, Some(label)) => format!("`{label}`"),
+        (false, None) => format!("`{}`", episode.name),
+        (true, None) => format!("the `{}`", episode.kind.word()),
     }
 }
 

@@ -8,7 +8,7 @@ use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::episode::{Episode, Kind};
 use crate::form::clip;
-use crate::lower::Origins;
+use crate::lower::{Origins, events_of};
 use crate::source::Span;
 
 /// Notes the activities that start at the true end of one whose end is heard late.
@@ -33,22 +33,14 @@ pub fn notes_on_merging(network: &Network, origins: &Origins, root: &Episode) ->
         return Vec::new();
     }
     let mut notes = Vec::new();
-    let mut event = 0_u32;
-    let mut open = vec![root];
-    // The events were numbered in this order: the start and the end of an episode, then its parts.
-    while let Some(episode) = open.pop() {
-        let class = classes.find(event);
+    for (episode, (start, _)) in events_of(root) {
         if episode.kind == Kind::Primitive
-            && let Some([link]) = delayed.get(&class).map(Vec::as_slice)
+            && let Some([link]) = delayed.get(&classes.find(start.0)).map(Vec::as_slice)
         {
             let contingent = &network.contingents()[*link];
             let Some(origin) = origins.contingents.get(*link) else { break };
-            if contingent.from.0 != event {
-                notes.push(note(episode, &origin.subject, contingent.delay, origin.places));
-            }
+            notes.push(note(episode, &origin.subject, contingent.delay, origin.places));
         }
-        event += 2;
-        open.extend(episode.parts.iter().rev());
     }
     notes
 }

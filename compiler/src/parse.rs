@@ -1,10 +1,12 @@
 //! Forms to the program as written. Looks at the shape of each form alone; names are resolved afterwards.
 
 mod amount;
+mod binding;
 mod body;
 mod class;
 mod condition;
 mod declaration;
+mod label;
 mod options;
 
 pub(crate) use body::OPERATORS;

@@ -2,7 +2,8 @@
 
 use kirk_network::{Bound, Duration};
 
-use crate::ast::{Condition, Ident, Value};
+use crate::ast::{Condition, Ident, ValueKind};
+use crate::calculate::Operator;
 use crate::source::Span;
 
 /// All programs, and the one to start from.
@@ -50,7 +51,7 @@ pub struct Timing {
 }
 
 /// An interval of durations, with places for messages.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Bounds {
     /// The least, and where it is written.
     pub lower: Amount,
@@ -60,8 +61,8 @@ pub struct Bounds {
     pub span: Span,
 }
 
-/// A duration, known or given by a parameter.
-#[derive(Clone, Copy, Debug)]
+/// A duration, known or depending on variables.
+#[derive(Clone, Debug)]
 pub struct Amount {
     /// Its value.
     pub value: AmountValue,
@@ -70,12 +71,36 @@ pub struct Amount {
 }
 
 /// What is known of a duration before programs are unfolded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub enum AmountValue {
     /// Its value; `Infinite` only where no upper bound is given.
     Known(Bound),
-    /// The argument in this place.
-    Parameter(usize),
+    /// To be calculated.
+    Computed(Box<Expression>),
+    /// It was wrong, which has been reported.
+    Error,
+}
+
+/// A value, as far as it is known before programs are unfolded.
+#[derive(Clone, Debug)]
+pub struct Expression {
+    /// What it is.
+    pub kind: ExpressionKind,
+    /// Where.
+    pub span: Span,
+}
+
+/// The kinds of expressions.
+#[derive(Clone, Debug)]
+pub enum ExpressionKind {
+    /// A value.
+    Value(ValueKind),
+    /// What a parameter or a name of `let` or `dotimes` stands for: its position, counted from the outside, and its name.
+    Variable(usize, String),
+    /// So many units of so many microseconds.
+    Scaled(i64, Box<Expression>),
+    /// Arithmetic.
+    Calculated(Operator, Vec<Expression>),
     /// It was wrong, which has been reported.
     Error,
 }
@@ -88,7 +113,7 @@ pub enum Body {
         /// Its position in the model.
         program: usize,
         /// The arguments.
-        arguments: Vec<Argument>,
+        arguments: Vec<Expression>,
         /// The form.
         span: Span,
     },
@@ -112,23 +137,97 @@ pub enum Body {
         /// The operator.
         operator: Span,
     },
+    /// A wait.
+    Delay {
+        /// How long.
+        bounds: Bounds,
+        /// The form.
+        span: Span,
+    },
+    /// The body with these variables added to those around it.
+    Let {
+        /// What they stand for.
+        values: Vec<Expression>,
+        /// The body.
+        body: Vec<Body>,
+    },
+    /// The body again and again, with the number of repetitions before as an added variable.
+    Repeat {
+        /// How many times.
+        count: Expression,
+        /// Where the variable is written.
+        variable: Span,
+        /// The body.
+        body: Vec<Body>,
+        /// The operator.
+        operator: Span,
+    },
+    /// A name for what the body unfolds to.
+    Label {
+        /// The name.
+        name: Ident,
+        /// What distinguishes it from others of the name.
+        arguments: Vec<Expression>,
+        /// The body.
+        body: Vec<Body>,
+        /// The operator.
+        operator: Span,
+    },
+    /// A constraint between two events.
+    Between(Box<Between>),
 }
 
-/// An argument of a call.
+/// What `between` says.
 #[derive(Clone, Debug)]
-pub enum Argument {
-    /// A value.
-    Value(Value),
-    /// Whatever the calling program was given in this place.
-    Parameter(usize),
+pub struct Between {
+    /// Where the interval begins.
+    pub from: EventOf,
+    /// Where it ends.
+    pub to: EventOf,
+    /// From the one to the other.
+    pub bounds: Bounds,
+}
+
+/// The start or the end of something that has a name.
+#[derive(Clone, Debug)]
+pub struct EventOf {
+    /// True for the end.
+    pub end: bool,
+    /// The name as written.
+    pub name: Ident,
+    /// The program of this name, if there is one.
+    pub program: Option<usize>,
+    /// The arguments, if any are written.
+    pub arguments: Option<Vec<Expression>>,
+    /// The form.
+    pub span: Span,
+}
+
+impl Body {
+    /// The forms inside it.
+    pub fn parts(&self) -> &[Body] {
+        match self {
+            Body::Group { body, .. }
+            | Body::Within { body, .. }
+            | Body::Let { body, .. }
+            | Body::Repeat { body, .. }
+            | Body::Label { body, .. } => body,
+            Body::Call { .. } | Body::Delay { .. } | Body::Between(_) => &[],
+        }
+    }
 }
 
 impl AmountValue {
     /// A number known at once.
-    pub fn seconds(self) -> Option<Duration> {
+    pub fn seconds(&self) -> Option<Duration> {
         match self {
             AmountValue::Known(bound) => bound.finite(),
             _ => None,
         }
+    }
+
+    /// True if it is known to be this.
+    pub fn is(&self, wanted: Bound) -> bool {
+        matches!(self, AmountValue::Known(bound) if *bound == wanted)
     }
 }

@@ -53,7 +53,24 @@ fn a_mission_cut_anywhere_gives_a_result() {
 #[test]
 fn nesting_of_any_depth_gives_a_result() {
     on_a_small_stack(|| {
-        for unit in ["(", "'", "((", "[", "#|", "(sequence ", "(minutes ", "`(", ")", "\"", "(and "] {
+        for unit in [
+            "(",
+            "'",
+            "((",
+            "[",
+            "#|",
+            "(sequence ",
+            "(minutes ",
+            "`(",
+            ")",
+            "\"",
+            "(and ",
+            "(+ ",
+            "(let ((x ",
+            "(label x ",
+            "(dotimes (i 2) ",
+            "(between (start ",
+        ] {
             for depth in [10, 1_000, 100_000] {
                 result(&unit.repeat(depth));
                 result(&format!(
@@ -74,18 +91,26 @@ fn nesting_of_any_depth_gives_a_result() {
 #[test]
 fn what_may_be_nested_is_compiled_and_written_on_a_small_stack() {
     on_a_small_stack(|| {
-        for (open, close) in [("(sequence (:slack t) ", ")"), ("(parallel () ", ")")] {
-            let depth = 990;
+        let opens = [
+            ("(sequence (:slack t) ", 1),
+            ("(parallel () ", 1),
+            ("(let ((x 1)) ", 0),
+            ("(dotimes (i 1) ", 0),
+            ("(label (x i) (dotimes (i 1) ", 0),
+        ];
+        for (open, episodes) in opens {
+            let depth = 990 / open.matches(" (").count().max(1);
             let text = format!(
-                "(define-control-program a () (declare (primitive)))\n(define-control-program main ()\n{}(a){})\n",
+                "(define-control-program a () (declare (primitive)))\n(define-control-program main ()\n(let ((i 0)) {}(a){}))\n",
                 open.repeat(depth),
-                close.repeat(depth)
+                ")".repeat(open.matches('(').count() * depth - open.matches(')').count() * depth)
             );
             let compiled = result(&text);
-            let plan = compiled.plan.expect("a plan");
-            assert_eq!(plan.network.events().len(), 2 * (depth + 2));
+            let said = common::diagnostics(&text, &compiled.diagnostics);
+            let plan = compiled.plan.unwrap_or_else(|| panic!("{open}: {said}"));
+            assert_eq!(plan.network.events().len(), 2 * (episodes * depth + 2));
             assert!(to_sexpr(&compiled.ast).unwrap().len() > depth);
-            assert!(to_sexpr(&compiled.episodes).unwrap().len() > depth);
+            assert!(to_sexpr(&compiled.episodes).unwrap().len() > episodes * depth);
         }
         let calls: String =
             (1..=990).map(|n| format!("(define-control-program p{n} () (p{}))\n", n - 1)).collect();
@@ -208,7 +233,23 @@ proptest! {
     }
 }
 
-const WORDS: [&str; 40] = [
+const WORDS: [&str; 56] = [
+    "(dotimes (i 3)",
+    "(dotimes (i",
+    "(let ((x 5))",
+    "(let*",
+    "(label x",
+    "(label (x i)",
+    "(between (start x) (end a) (simple-temporal :upper-bound 5))",
+    "(between",
+    "(start",
+    "(end",
+    "(delay 1 2)",
+    "(delay",
+    "x",
+    "i",
+    "(+ i 1)",
+    "(* 2",
     "(",
     "(",
     "(",

@@ -3,11 +3,10 @@
 use kirk_network::{Bound, Duration};
 
 use super::Analyser;
-use crate::ast::{self, AmountKind};
+use crate::ast;
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::form::clip;
-use crate::problem::Problems;
 use crate::source::Span;
 use crate::typed::{Amount, AmountValue, Bounds, Timing};
 
@@ -24,7 +23,7 @@ impl Analyser<'_> {
         };
         let bounds = self.bounds(&duration.bounds, "the lower bound", "the upper bound");
         let name = clip(&definition.name.name);
-        if duration.contingent && bounds.upper.value == AmountValue::Known(Bound::Infinite) {
+        if duration.contingent && bounds.upper.value.is(Bound::Infinite) {
             self.problems.push(
                 Diagnostic::error(
                     Code::ContingentUnbounded,
@@ -55,21 +54,37 @@ impl Analyser<'_> {
         Timing { bounds, contingent: duration.contingent, delay }
     }
 
-    /// Resolves both bounds; a missing lower bound is 0, a missing upper bound none.
+    /// Resolves both bounds, which are not negative; a missing lower bound is 0, a missing upper bound none.
     pub(super) fn bounds(&mut self, written: &ast::Bounds, low: &str, high: &str) -> Bounds {
-        let lower = self.amount(written.lower.as_ref(), Bound::Finite(Duration::ZERO), written.span);
-        let upper = self.amount(written.upper.as_ref(), Bound::Infinite, written.span);
+        let bounds = self.signed_bounds(written, low, high);
+        for (amount, what) in [(&bounds.lower, low), (&bounds.upper, high)] {
+            if let Some(problem) = amount.value.seconds().and_then(|value| negative(value, amount.span, what))
+            {
+                self.problems.push(problem);
+            }
+        }
+        bounds
+    }
+
+    /// Resolves both bounds.
+    pub(super) fn signed_bounds(&mut self, written: &ast::Bounds, low: &str, high: &str) -> Bounds {
+        let lower = self.amount(written.lower.as_ref(), Bound::Finite(Duration::ZERO), written.span, low);
+        let upper = self.amount(written.upper.as_ref(), Bound::Infinite, written.span, high);
         let bounds = Bounds { lower, upper, span: written.span };
-        if lower.value == AmountValue::Known(Bound::Infinite) {
+        if bounds.lower.value.is(Bound::Infinite) {
             self.problems.push(
-                Diagnostic::error(Code::InfiniteLower, lower.span, format!("{low} is infinite"))
+                Diagnostic::error(Code::InfiniteLower, bounds.lower.span, format!("{low} is infinite"))
                     .primary("this would never be over")
                     .help("Only an upper bound may be `:infinity`."),
             );
-        } else if let (Some(least), Some(most)) = (lower.value.seconds(), upper.value.seconds())
-            && let Some(problem) = reversed(least, most, bounds, low, high)
+        } else if let (Some(least), Some(most)) = (bounds.lower.value.seconds(), bounds.upper.value.seconds())
+            && let Some(problem) = reversed(least, most, &bounds, low, high)
         {
-            self.problems.push(problem);
+            let help = "Without a `:lower-bound`, it is 0: the first event comes first. For the other way round, swap the two events.";
+            self.problems.push(match most < Duration::ZERO && written.lower.is_none() {
+                true => problem.primary("no lower bound is given").help(help),
+                false => problem,
+            });
         }
         bounds
     }
@@ -79,7 +94,7 @@ impl Analyser<'_> {
         let mut bounds = self.bounds(written, low, high);
         if written.upper.is_none() {
             bounds.upper.value = AmountValue::Known(Bound::Finite(Duration::ZERO));
-            if bounds.lower.value != AmountValue::Known(Bound::Finite(Duration::ZERO)) {
+            if !bounds.lower.value.is(Bound::Finite(Duration::ZERO)) {
                 self.problems.push(
                     Diagnostic::error(Code::DelayReversed, written.span, format!("{high} is missing"))
                         .primary("only the shortest one is given")
@@ -90,42 +105,30 @@ impl Analyser<'_> {
         bounds
     }
 
-    fn amount(&mut self, written: Option<&ast::Amount>, absent: Bound, around: Span) -> Amount {
+    fn amount(&mut self, written: Option<&ast::Amount>, absent: Bound, around: Span, what: &str) -> Amount {
         let Some(written) = written else {
             return Amount { value: AmountValue::Known(absent), span: around };
         };
-        let value = match &written.kind {
-            AmountKind::Number(number) => AmountValue::Known(Bound::Finite(*number)),
-            AmountKind::Infinite => AmountValue::Known(Bound::Infinite),
-            AmountKind::Error => AmountValue::Error,
-            AmountKind::Named(name) => match self.parameter(name) {
-                Some(index) => AmountValue::Parameter(index),
-                None => match self.names.number(name, &self.definition.home) {
-                    Some(number) => match &self.program.parameters[number].value.kind {
-                        AmountKind::Number(number) => AmountValue::Known(Bound::Finite(*number)),
-                        AmountKind::Infinite => AmountValue::Known(Bound::Infinite),
-                        AmountKind::Named(other) => {
-                            not_a_number(other.span, &name.name, self.problems);
-                            AmountValue::Error
-                        }
-                        AmountKind::Error => AmountValue::Error,
-                    },
-                    None => {
-                        self.unknown_name(name);
-                        AmountValue::Error
-                    }
-                },
-            },
-        };
-        Amount { value, span: written.span }
+        let mut resolver = self.resolver();
+        let expression = resolver.amount(written);
+        Amount { value: resolver.known(&expression, what), span: written.span }
     }
+}
+
+/// Says that a duration is negative, if it is.
+pub(crate) fn negative(value: Duration, span: Span, what: &str) -> Option<Diagnostic> {
+    (value < Duration::ZERO).then(|| {
+        Diagnostic::error(Code::Negative, span, format!("{what} is negative"))
+            .primary(format!("{value} s"))
+            .help("A bound says how much time passes from a start to an end, which is never less than 0.")
+    })
 }
 
 /// Says that the least is more than the most, if it is.
 pub(crate) fn reversed(
     least: Duration,
     most: Duration,
-    bounds: Bounds,
+    bounds: &Bounds,
     low: &str,
     high: &str,
 ) -> Option<Diagnostic> {
@@ -136,12 +139,4 @@ pub(crate) fn reversed(
             .label(bounds.upper.span, "this is the smaller one")
             .help("No duration is as long as the one and as short as the other: are they swapped?")
     })
-}
-
-fn not_a_number(span: Span, name: &str, problems: &mut Problems) {
-    problems.push(
-        Diagnostic::error(Code::NotANumber, span, format!("the value of `{}` is not a number", clip(name)))
-            .primary("a number was expected")
-            .help("A named number is given by a number, not by another name."),
-    );
 }

@@ -92,10 +92,10 @@ pub(crate) fn calls_of(model: &Model, index: usize) -> Vec<(usize, Span)> {
         Work::Primitive(_) => Vec::new(),
     };
     while let Some(body) = open.pop() {
-        match body {
-            Body::Call { program, span, .. } => found.push((*program, *span)),
-            Body::Group { body, .. } | Body::Within { body, .. } => open.extend(body.iter().rev()),
+        if let Body::Call { program, span, .. } = body {
+            found.push((*program, *span));
         }
+        open.extend(body.parts().iter().rev());
     }
     found
 }
@@ -115,7 +115,7 @@ fn recursion(model: &Model, cycle: &[usize], call: Span) -> Diagnostic {
             "this call closes the circle"
         })
         .help(format!(
-            "{}: a mission that never ends cannot be scheduled. Write repetitions out.",
+            "{}: a mission that never ends cannot be scheduled. To repeat something, use `dotimes`.",
             path.join(" -> ")
         ));
     for index in cycle.iter().take(8) {

@@ -7,7 +7,7 @@ use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::form::clip;
 use crate::nearest::nearest;
-use crate::parse::DEFAULT_PACKAGE;
+use crate::parse::{DEFAULT_PACKAGE, OPERATORS};
 use crate::problem::Problems;
 use crate::source::Span;
 
@@ -88,7 +88,6 @@ impl Names {
 
     /// Says that a call means nothing, and what it may have meant.
     pub(super) fn unknown_program(&self, ident: &Ident, home: &str) -> Diagnostic {
-        const OPERATORS: [&str; 3] = crate::parse::OPERATORS;
         let name = clip(&ident.name);
         if let Some(package) = &ident.package
             && !self.packages.contains(package)

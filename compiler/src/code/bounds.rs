@@ -79,7 +79,8 @@ pub(super) const INFINITE_LOWER: Page = Page {
 
 pub(super) const UNKNOWN_UNIT: Page = Page {
     meaning: "The units of time are `microseconds`, `seconds`, `minutes`, `hours` and `days`, each applied to one number. A
-plain number is seconds.",
+plain number is seconds. Numbers may be calculated with `+`, `-`, `*`, `/`, `1+`, `1-`, `min`, `max` and `mod`; kirk
+calculates exactly or not at all. Anything else in place of a number means nothing to it.",
     wrong: "(define-control-program a () (declare (primitive) (duration (simple :upper-bound (minuts 5)))))",
     right: "(define-control-program a () (declare (primitive) (duration (simple :upper-bound (minutes 5)))))",
 };
@@ -91,4 +92,29 @@ Probably a bound was forgotten; if not, the form can go.",
   (with-temporal-constraint (simple-temporal) (a)))",
     right: "(define-control-program main ()
   (with-temporal-constraint (simple-temporal :upper-bound 60) (a)))",
+};
+
+pub(super) const BAD_COUNT: Page = Page {
+    meaning: "`dotimes` repeats its body 0, 1, 2, ... times. The number has to be known before the mission starts: a whole number,
+a named number, a parameter that was given one, or a calculation with these. Every repetition is unfolded, so at
+most 200,000 are possible.",
+    wrong: "(define-control-program a () (declare (primitive)))
+(define-control-program main ()
+  (dotimes (i 2.5) (a)))",
+    right: "(define-control-program a () (declare (primitive)))
+(define-control-program main ()
+  (dotimes (i 3) (a)))",
+};
+
+pub(super) const SAME_EVENT: Page = Page {
+    meaning: "Both events of a `between` are one and the same, so the time between them is 0 s whatever the bounds say. Probably
+one of them should be the other end, or that of another occurrence.",
+    wrong: "(define-control-program a () (declare (primitive)))
+(define-control-program main ()
+  (a)
+  (between (start a) (start a) (simple-temporal :upper-bound 5)))",
+    right: "(define-control-program a () (declare (primitive)))
+(define-control-program main ()
+  (a)
+  (between (start a) (end a) (simple-temporal :upper-bound 5)))",
 };

@@ -12,8 +12,9 @@ the top level usually means that the program before it was closed too early.",
 };
 
 pub(super) const UNKNOWN_OPERATOR: Page = Page {
-    meaning: "The operators of a body are `sequence`, `parallel` and `with-temporal-constraint`; every other form is a call
-of a program. This one is neither, and looks like an operator misspelt.",
+    meaning: "The operators of a body are `sequence`, `parallel`, `with-temporal-constraint`, `delay`, `between`, `label`,
+`dotimes`, `let` and `let*`; every other form is a call of a program. This one is neither, and looks like an
+operator misspelt.",
     wrong: "(define-control-program main ()
   (seqence (:slack t) (a)))",
     right: "(define-control-program main ()
@@ -85,15 +86,6 @@ around the body.",
     right: "(define-control-program main ()
   (with-temporal-constraint (simple-temporal :upper-bound 60)
     (sequence () (a) (a))))",
-};
-
-pub(super) const NOT_YET: Page = Page {
-    meaning: "The language has the forms `let`, `dotimes`, `label`, `between` and `delay`, and kirk does not have them yet.
-The message says what to write until it does.",
-    wrong: "(define-control-program main ()
-  (dotimes (i 2) (a)))",
-    right: "(define-control-program main ()
-  (sequence () (a) (a)))",
 };
 
 pub(super) const UNKNOWN_SLOT_OPTION: Page = Page {

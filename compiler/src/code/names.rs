@@ -22,8 +22,8 @@ and lower case make no difference in names.",
 
 pub(super) const RECURSION: Page = Page {
     meaning: "A program calls itself, directly or through others; the message shows the circle. A mission is a fixed set of
-events, so programs are unfolded before anything is executed, and this one would never end. Write repetitions
-out.",
+events, so programs are unfolded before anything is executed, and this one would never end. To repeat
+something, use `dotimes`.",
     wrong: "(define-control-program a () (sequence () (b) (a)))",
     right: "(define-control-program a () (sequence () (b) (b)))",
 };
@@ -56,8 +56,8 @@ and are not reported.",
 };
 
 pub(super) const UNKNOWN_NAME: Page = Page {
-    meaning: "A name that stands for a value is a parameter of the program it is used in, or is defined by `defparameter` or
-`defconstant`. A symbol that stands for itself is quoted: `'north`.",
+    meaning: "A name that stands for a value is a parameter of the program it is used in, is given by a `let` or `dotimes`
+around the place, or is defined by `defparameter` or `defconstant`, for other named numbers further up. A symbol that stands for itself is quoted: `'north`.",
     wrong: "(define-control-program a () (declare (primitive) (duration (simple :upper-bound *limit*))))",
     right: "(defparameter *limit* 60)
 (define-control-program a () (declare (primitive) (duration (simple :upper-bound *limit*))))",
@@ -104,4 +104,36 @@ depends on them. To start with definite values, write a program `main` that call
     wrong: "(define-control-program main (glider) (declare (primitive)))",
     right: "(define-control-program move (glider) (declare (primitive)))
 (define-control-program main () (move 'g1))",
+};
+
+pub(super) const UNKNOWN_LABEL: Page = Page {
+    meaning: "`(start x)` and `(end x)` mean an occurrence: one that `(label x ...)` names, or that of a program called `x`. With
+arguments, `(end (confirm 0 1))` means the one labelled or called with these arguments. Nothing of this name, or
+nothing with these arguments, occurs in the mission. Repetitions count from 0, so the last of n is n - 1.",
+    wrong: "(define-control-program a () (declare (primitive)))
+(define-control-program main ()
+  (parallel (:slack t)
+    (dotimes (i 3) (label (step i) (a)))
+    (between (end (step 2)) (start (step 3)) (simple-temporal :upper-bound 5))))",
+    right: "(define-control-program a () (declare (primitive)))
+(define-control-program main ()
+  (parallel (:slack t)
+    (dotimes (i 3) (label (step i) (a)))
+    (between (end (step 1)) (start (step 2)) (simple-temporal :upper-bound 5))))",
+};
+
+pub(super) const AMBIGUOUS_LABEL: Page = Page {
+    meaning: "The name means several occurrences, and a constraint is about one. Kirk looks in the program or the repetition of
+a `dotimes` the `between` stands in, with everything called from there, and then further out; the first that has
+any occurrence of the name must have exactly one. Give the one you mean a name of its own with `label`. Inside a
+`dotimes`, a label with an argument, `(label (x i) ...)`, tells the repetitions apart; programs called with
+different arguments can be told apart by these.",
+    wrong: "(define-control-program a () (declare (primitive)))
+(define-control-program main ()
+  (sequence (:slack t) (a) (a))
+  (between (start a) (end a) (simple-temporal :upper-bound 60)))",
+    right: "(define-control-program a () (declare (primitive)))
+(define-control-program main ()
+  (sequence (:slack t) (label first (a)) (label last (a)))
+  (between (start first) (end last) (simple-temporal :upper-bound 60)))",
 };

@@ -3,6 +3,7 @@
 use crate::analyse::calls_of;
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
+use crate::evaluate;
 use crate::form::clip;
 use crate::problem::Problems;
 use crate::typed::{Body, Model, Work};
@@ -33,7 +34,7 @@ pub(super) fn check(model: &Model, entry: usize, problems: &mut Problems) -> boo
             format!("`{name}` unfolds to {count}"),
         )
         .primary(format!("at most {MAX_EPISODES} are possible"))
-        .help("Every call is an episode of its own, and so is everything it calls in turn.");
+        .help("Every call is an episode of its own, and so is everything it calls in turn; every repetition counts.");
         if let Some((target, span)) = largest {
             let what = clip(&model.programs[target].name.name);
             problem = problem.label(span, format!("most of them come from `{what}`"));
@@ -88,16 +89,26 @@ fn sizes(model: &Model, entry: usize) -> Vec<Option<Size>> {
 fn size(work: &Work, sizes: &[Option<Size>]) -> Size {
     let Work::Body(body) = work else { return Size { episodes: 1, depth: 1 } };
     let mut total = Size { episodes: 1, depth: 1 };
-    let mut open: Vec<(&Body, u64)> = body.iter().map(|part| (part, 2)).collect();
-    while let Some((part, depth)) = open.pop() {
+    let mut open: Vec<(&Body, u64, u64)> = body.iter().map(|part| (part, 2, 1)).collect();
+    while let Some((part, depth, times)) = open.pop() {
         let own = match part {
             Body::Call { program, .. } => sizes[*program].unwrap_or(Size { episodes: 1, depth: 1 }),
-            Body::Group { body, .. } | Body::Within { body, .. } => {
-                open.extend(body.iter().map(|part| (part, depth + 1)));
+            Body::Group { .. } | Body::Within { .. } | Body::Label { .. } | Body::Delay { .. } => {
                 Size { episodes: 1, depth: 1 }
             }
+            Body::Let { .. } | Body::Repeat { .. } | Body::Between(_) => Size { episodes: 0, depth: 1 },
         };
-        total.episodes = total.episodes.saturating_add(own.episodes);
+        // A number that depends on variables counts as one; what comes of it is counted when it is unfolded.
+        let again = match part {
+            Body::Repeat { count, .. } => evaluate::count(count, &[]).unwrap_or(1),
+            _ => 1,
+        };
+        let inside = part.parts().iter().map(|inner| (inner, depth + 1, times.saturating_mul(again)));
+        open.extend(inside);
+        // A label is an episode of its own only if it names several forms.
+        let own_episodes =
+            if matches!(part, Body::Label { .. }) && part.parts().len() == 1 { 0 } else { own.episodes };
+        total.episodes = total.episodes.saturating_add(own_episodes.saturating_mul(times));
         total.depth = total.depth.max((depth - 1).saturating_add(own.depth));
     }
     total

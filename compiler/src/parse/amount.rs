@@ -1,16 +1,17 @@
-//! Durations: `15`, `1.5`, `1/2`, `1d0`, `(minutes 5)`, `:infinity`, `*name*`.
+//! Durations and other numbers: `15`, `1.5`, `1/2`, `1d0`, `(minutes 5)`, `:infinity`, `*name*`, `(+ x 1)`.
 
 use kirk_network::{Duration, ParseDurationError};
 
 use super::ident;
-use crate::ast::{Amount, AmountKind, Ident};
+use crate::ast::{Amount, AmountKind};
+use crate::calculate::Operator;
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::form::{Form, FormKind, clip};
 use crate::nearest::did_you_mean;
 use crate::problem::Problems;
 
-const UNITS: [(&str, i128); 5] = [
+const UNITS: [(&str, i64); 5] = [
     ("microseconds", 1),
     ("seconds", 1_000_000),
     ("minutes", 60_000_000),
@@ -18,20 +19,14 @@ const UNITS: [(&str, i128); 5] = [
     ("days", 86_400_000_000),
 ];
 
-/// Reads a duration that is not negative. `what` names it in messages.
+/// Reads a duration or another number. `what` names it in messages.
 pub(super) fn amount(form: &Form, what: &str, problems: &mut Problems) -> Amount {
-    let kind = match kind(form, what, 1_000_000, problems) {
-        AmountKind::Number(value) if value < Duration::ZERO => {
-            problems.push(
-                Diagnostic::error(Code::Negative, form.span, format!("{what} is negative"))
-                    .primary(format!("{value} s"))
-                    .help("A bound says how much time passes from a start to an end, which is never less than 0."),
-            );
-            AmountKind::Error
-        }
-        kind => kind,
-    };
-    Amount { kind, span: form.span }
+    Amount { kind: kind(form, what, 1_000_000, problems), span: form.span }
+}
+
+/// True if this is a calculation or a number with a unit: a list that stands for a number.
+pub(super) fn is_calculation(form: &Form) -> bool {
+    form.call().is_some_and(|(word, _)| Operator::of(word).is_some() || unit(word).is_some())
 }
 
 /// The number of microseconds of a number as written, in units of `unit` microseconds.
@@ -82,46 +77,87 @@ fn integer(text: &str) -> Result<i128, ParseDurationError> {
     }
 }
 
-fn kind(form: &Form, what: &str, unit: i128, problems: &mut Problems) -> AmountKind {
+fn kind(form: &Form, what: &str, unit: i64, problems: &mut Problems) -> AmountKind {
     match &form.kind {
-        FormKind::Number(text) => match number(text, unit) {
+        FormKind::Number(text) => match number(text, i128::from(unit)) {
             Ok(value) => return AmountKind::Number(value),
             Err(error) => problems.push(inexact(form, what, text, error)),
         },
-        FormKind::Keyword(word) if matches!(word.as_str(), "infinity" | "inf" | "+infinity") => return AmountKind::Infinite,
+        FormKind::Keyword(word) if matches!(word.as_str(), "infinity" | "inf" | "+infinity") => {
+            return AmountKind::Infinite;
+        }
         FormKind::Symbol(symbol) if !matches!(symbol.name.as_str(), "t" | "nil") => {
-            match suffix(&symbol.name) {
-                Some(help) => problems.push(not_a_number(form, what).help(help)),
-                None => {
-                    let name = ident(form).unwrap_or(Ident { package: None, name: String::new(), span: form.span });
-                    return AmountKind::Named(name);
-                }
+            match (suffix(&symbol.name), ident(form)) {
+                (Some(help), _) => problems.push(not_a_number(form, what).help(help)),
+                (None, Some(name)) => return AmountKind::Named(name),
+                (None, None) => {}
             };
         }
-        FormKind::List(_) => match form.call() {
-            Some((word, [inner])) => match UNITS.iter().find(|(name, _)| *name == word || name.strip_suffix('s') == Some(word)) {
-                Some((_, micros)) => match kind(inner, what, *micros, problems) {
-                    AmountKind::Named(_) => problems.push(
-                        not_a_number(inner, what).help("A unit is applied to a number: name the duration with its unit instead, as in `(defparameter *wait* (minutes 5))`."),
-                    ),
-                    other => return other,
-                },
-                None => {
-                    let message = format!("`{}` is not a unit of time", clip(word));
-                    problems.push(
-                        Diagnostic::error(Code::UnknownUnit, form.span, message)
-                            .primary(format!("{what} was expected"))
-                            .help("The units are `(seconds 90)`, `(minutes 5)`, `(hours 1.5)` and `(days 1)`; kirk does not calculate.")
-                            .maybe_help(did_you_mean(word, UNITS.map(|(name, _)| name))),
-                    );
-                }
-            },
-            _ => problems.push(not_a_number(form, what)),
-        },
+        FormKind::List(_) => return list(form, what, problems),
         FormKind::Error => {}
         _ => problems.push(not_a_number(form, what)),
     }
     AmountKind::Error
+}
+
+/// `(minutes 5)`, `(+ x 1)`.
+fn list(form: &Form, what: &str, problems: &mut Problems) -> AmountKind {
+    let Some((word, rest)) = form.call() else {
+        problems.push(not_a_number(form, what));
+        return AmountKind::Error;
+    };
+    let (least, most, example) = match (Operator::of(word), unit(word)) {
+        (Some(operator), _) => {
+            let (least, most) = operator.takes();
+            (least, most, format!("({word} x{})", if most > 1 { " 1" } else { "" }))
+        }
+        (None, Some(_)) => (1, 1, format!("({word} 5)")),
+        (None, None) => {
+            let near = UNITS.iter().map(|(name, _)| *name).chain(Operator::ALL.map(Operator::word));
+            let message = format!("`{}` is neither a unit of time nor arithmetic", clip(word));
+            problems.push(
+                Diagnostic::error(Code::UnknownUnit, form.span, message)
+                    .primary(format!("{what} was expected"))
+                    .help("The units are `(seconds 90)`, `(minutes 5)`, `(hours 1.5)` and `(days 1)`; arithmetic is `+`, `-`, `*`, `/`, `1+`, `1-`, `min`, `max` and `mod`.")
+                    .maybe_help(did_you_mean(word, near)),
+            );
+            return AmountKind::Error;
+        }
+    };
+    if rest.len() < least || rest.len() > most {
+        let number = match (least, most) {
+            (1, 1) => "one number",
+            (2, 2) => "two numbers",
+            (2, _) => "two numbers or more",
+            _ => "at least one number",
+        };
+        let message = format!("`{word}` takes {number}, not {}", rest.len());
+        let at = form.list().and_then(|items| items.first()).map_or(form.span, |first| first.span);
+        problems.push(
+            Diagnostic::error(Code::WrongShape, at, message)
+                .primary("in this calculation")
+                .help(format!("Write `{example}`.")),
+        );
+        return AmountKind::Error;
+    }
+    match (Operator::of(word), unit(word), rest) {
+        (Some(operator), ..) => {
+            let part = |part: &Form| amount(part, "part of this calculation", problems);
+            AmountKind::Calculation(operator, rest.iter().map(part).collect())
+        }
+        (None, Some((name, micros)), [inner]) => match kind(inner, what, micros, problems) {
+            found @ (AmountKind::Named(_) | AmountKind::Unit(..) | AmountKind::Calculation(..)) => {
+                AmountKind::Unit(name, micros, Box::new(Amount { kind: found, span: inner.span }))
+            }
+            known => known,
+        },
+        _ => AmountKind::Error,
+    }
+}
+
+/// The unit of this name, in the plural or in the singular.
+fn unit(word: &str) -> Option<(&'static str, i64)> {
+    UNITS.into_iter().find(|(name, _)| *name == word || name.strip_suffix('s') == Some(word))
 }
 
 fn not_a_number(form: &Form, what: &str) -> Diagnostic {

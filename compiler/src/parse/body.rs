@@ -1,9 +1,9 @@
-//! What a program does: calls, `sequence`, `parallel`, `with-temporal-constraint`.
+//! What a program does: calls, `sequence`, `parallel`, `with-temporal-constraint`, `delay`.
 
-use super::amount::{amount, number};
+use super::amount::{amount, is_calculation, number};
 use super::options::{flag, options};
-use super::{ident, text_of, unexpected};
-use crate::ast::{Body, Bounds, Call, Group, Value, ValueKind, Within};
+use super::{binding, ident, label, text_of, unexpected};
+use crate::ast::{Argument, Body, Bounds, Call, Group, Value, ValueKind, Wait, Within};
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::form::{Form, FormKind, clip};
@@ -11,10 +11,22 @@ use crate::nearest::{did_you_mean, nearest};
 use crate::problem::Problems;
 
 /// The operators of bodies.
-pub(crate) const OPERATORS: [&str; 3] = ["sequence", "parallel", "with-temporal-constraint"];
+pub(crate) const OPERATORS: [&str; 9] = [
+    "sequence",
+    "parallel",
+    "with-temporal-constraint",
+    "delay",
+    "let",
+    "let*",
+    "dotimes",
+    "label",
+    "between",
+];
 
-/// What the language has and kirk does not have yet.
-pub(crate) const NOT_YET: [&str; 5] = ["let", "dotimes", "label", "between", "delay"];
+/// Parses the forms of a body.
+pub(super) fn bodies(forms: &[Form], problems: &mut Problems) -> Vec<Body> {
+    forms.iter().filter_map(|form| body(form, problems)).collect()
+}
 
 /// Parses one body form; `None` if it makes no sense, which is reported.
 pub(super) fn body(form: &Form, problems: &mut Problems) -> Option<Body> {
@@ -28,50 +40,52 @@ pub(super) fn body(form: &Form, problems: &mut Problems) -> Option<Body> {
             Some(if word == "sequence" { Body::Sequence(group) } else { Body::Parallel(group) })
         }
         Some("with-temporal-constraint") => Some(within(form, first, rest, problems)),
-        Some(word) if NOT_YET.contains(&word) => {
-            problems.push(
-                Diagnostic::error(Code::NotYet, first.span, format!("kirk does not have `{word}` yet"))
-                    .primary("part of the language, but not built yet")
-                    .help(match word {
-                        "let" => "Until then use `(defparameter *name* number)` or a parameter of the program.",
-                        "dotimes" => "Until then write the repetitions out.",
-                        "label" => "Until then each occurrence of a program is named by its place: `drive`, `drive#2`.",
-                        "between" => "Until then put `with-temporal-constraint` around the activities in question.",
-                        _ => "Until then define a primitive program with that duration and call it.",
-                    }),
-            );
-            None
-        }
+        Some("delay") => delay(form, first, rest, problems),
+        Some(word @ ("let" | "let*")) => binding::binding(form, first, rest, word == "let*", problems),
+        Some("dotimes") => binding::dotimes(form, first, rest, problems),
+        Some("label") => label::label(form, first, rest, problems),
+        Some("between") => label::between(form, first, rest, problems),
         Some("declare") => {
-            problems.push(
-                Diagnostic::error(Code::WrongShape, first.span, "`declare` stands inside of a form")
-                    .primary("not a body form")
-                    .help("Declarations belong to the program itself, right after its parameter list."),
-            );
+            misplaced_declaration(first, problems);
             None
         }
-        _ => match ident(first) {
-            Some(program) => {
-                let arguments = rest.iter().filter(|form| !form.is_error()).map(value).collect();
-                Some(Body::Call(Call { program, arguments, span: form.span }))
-            }
-            None => {
-                if !first.is_error() {
-                    let help =
-                        "A body form begins with an operator or with the name of a program: `(shower)`.";
-                    problems.push(unexpected(first, "an operator or a program", help));
-                }
-                None
-            }
-        },
+        _ => call(form, first, rest, problems),
     }
 }
 
-/// The word a body form begins with. A call has no lists for arguments: with one, a name close to an operator is a slip.
+#[inline(never)]
+fn misplaced_declaration(word: &Form, problems: &mut Problems) {
+    problems.push(
+        Diagnostic::error(Code::WrongShape, word.span, "`declare` stands inside of a form")
+            .primary("not a body form")
+            .help("Declarations belong to the program itself, right after its parameter list."),
+    );
+}
+
+#[inline(never)]
+fn call(form: &Form, first: &Form, rest: &[Form], problems: &mut Problems) -> Option<Body> {
+    match ident(first) {
+        Some(program) => {
+            let arguments = arguments(rest, problems);
+            Some(Body::Call(Call { program, arguments, span: form.span }))
+        }
+        None => {
+            if !first.is_error() {
+                let help = "A body form begins with an operator or with the name of a program: `(shower)`.";
+                problems.push(unexpected(first, "an operator or a program", help));
+            }
+            None
+        }
+    }
+}
+
+/// The word a body form begins with. A call has no lists for arguments, except to
+/// calculate: with one, a name close to an operator is a slip.
+#[inline(never)]
 fn operator<'a>(first: &'a Form, rest: &[Form], problems: &mut Problems) -> Option<&'a str> {
     let word = first.word()?;
-    let known = OPERATORS.contains(&word) || NOT_YET.contains(&word) || word == "declare";
-    if known || !rest.iter().any(|form| form.list().is_some()) {
+    let takes_lists = rest.iter().any(|form| form.list().is_some() && !is_calculation(form));
+    if OPERATORS.contains(&word) || word == "declare" || !takes_lists {
         return Some(word);
     }
     let Some(meant) = nearest(word, OPERATORS) else { return Some(word) };
@@ -112,6 +126,19 @@ pub(super) fn bounds(form: &Form, word: &str, problems: &mut Problems) -> Option
     }
 }
 
+/// The arguments of a call or of a label.
+pub(super) fn arguments(forms: &[Form], problems: &mut Problems) -> Vec<Argument> {
+    forms.iter().filter(|form| !form.is_error()).map(|form| argument(form, problems)).collect()
+}
+
+/// An argument: a number to calculate, or a value.
+pub(super) fn argument(form: &Form, problems: &mut Problems) -> Argument {
+    match is_calculation(form) {
+        true => Argument::Amount(amount(form, "this argument", problems)),
+        false => Argument::Value(value(form)),
+    }
+}
+
 /// A value as an argument or in a class.
 pub(super) fn value(form: &Form) -> Value {
     let kind = match &form.kind {
@@ -135,6 +162,7 @@ pub(super) fn value(form: &Form) -> Value {
     Value { kind, span: form.span }
 }
 
+#[inline(never)]
 fn group(form: &Form, operator: &Form, rest: &[Form], problems: &mut Problems) -> Group {
     let (slack, rest) = match rest.split_first() {
         Some((list, rest)) if is_option_list(list) => {
@@ -152,10 +180,11 @@ fn group(form: &Form, operator: &Form, rest: &[Form], problems: &mut Problems) -
         }
         _ => (false, rest),
     };
-    let body = rest.iter().filter_map(|form| body(form, problems)).collect();
+    let body = bodies(rest, problems);
     Group { slack, body, operator: operator.span, span: form.span }
 }
 
+#[inline(never)]
 fn within(form: &Form, operator: &Form, rest: &[Form], problems: &mut Problems) -> Body {
     const SHAPE: &str = "Write `(with-temporal-constraint (simple-temporal :upper-bound 60) body...)`.";
     let mut limits = Bounds { lower: None, upper: None, span: operator.span };
@@ -166,17 +195,9 @@ fn within(form: &Form, operator: &Form, rest: &[Form], problems: &mut Problems) 
                 word.starts_with("simple") || after.len() == 1 && !OPERATORS.contains(&word)
             }) =>
         {
-            match bounds(first, "simple-temporal", problems) {
-                Some(found) if first.list().is_some_and(|items| items.len() == 1) => {
-                    problems.push(
-                        Diagnostic::warning(Code::NoBounds, first.span, "this constraint allows everything")
-                            .primary("neither a lower nor an upper bound")
-                            .help(SHAPE),
-                    );
-                    limits = found;
-                }
-                Some(found) => limits = found,
-                None => {}
+            if let Some(found) = bounds(first, "simple-temporal", problems) {
+                warn_of_no_bounds(first, SHAPE, problems);
+                limits = found;
             }
             rest = after;
         }
@@ -201,8 +222,45 @@ fn within(form: &Form, operator: &Form, rest: &[Form], problems: &mut Problems) 
             .help(SHAPE),
         );
     }
-    let body = rest.iter().filter_map(|form| body(form, problems)).collect();
+    let body = bodies(rest, problems);
     Body::WithTemporalConstraint(Within { bounds: limits, body, operator: operator.span, span: form.span })
+}
+
+/// Says that `(simple-temporal)` means nothing.
+pub(super) fn warn_of_no_bounds(form: &Form, shape: &str, problems: &mut Problems) {
+    if form.list().is_some_and(|items| items.len() == 1) {
+        problems.push(
+            Diagnostic::warning(Code::NoBounds, form.span, "this constraint allows everything")
+                .primary("neither a lower nor an upper bound")
+                .help(shape),
+        );
+    }
+}
+
+#[inline(never)]
+fn delay(form: &Form, operator: &Form, rest: &[Form], problems: &mut Problems) -> Option<Body> {
+    const SHAPE: &str =
+        "Write `(delay 5 10)`: a wait of 5 to 10 s. `(delay 5 :infinity)` is a wait of at least 5 s.";
+    let (lower, upper) = match rest {
+        [both] if both.keyword().is_none() => (both, both),
+        [lower, upper] if lower.keyword().is_none() => (lower, upper),
+        _ => {
+            let message = match rest.first() {
+                None => "this delay is empty".to_string(),
+                Some(first) if first.keyword().is_some() => {
+                    "the bounds of a delay have no keywords".to_string()
+                }
+                Some(_) => format!("a delay has two bounds, not {}", rest.len()),
+            };
+            let problem = Diagnostic::error(Code::WrongShape, operator.span, message);
+            problems.push(problem.primary("in this form").help(SHAPE));
+            return None;
+        }
+    };
+    let lower = amount(lower, "the shortest wait", problems);
+    let upper = amount(upper, "the longest wait", problems);
+    let bounds = Bounds { lower: Some(lower), upper: Some(upper), span: form.span };
+    Some(Body::Delay(Wait { bounds, span: form.span }))
 }
 
 /// True for `()` and lists that begin with a keyword.

@@ -1,0 +1,188 @@
+//! The forms of a body: what is called, with which values, and which events are meant.
+
+use super::Analyser;
+use crate::ast;
+use crate::code::Code;
+use crate::diagnostic::Diagnostic;
+use crate::evaluate;
+use crate::form::clip;
+use crate::nearest::nearest;
+use crate::typed::{Between, Body, EventOf, Expression, ExpressionKind};
+
+impl Analyser<'_> {
+    /// Resolves the forms of a body.
+    pub(super) fn bodies(&mut self, bodies: &[ast::Body]) -> Vec<Body> {
+        bodies.iter().filter_map(|body| self.body(body)).collect()
+    }
+
+    fn body(&mut self, body: &ast::Body) -> Option<Body> {
+        match body {
+            ast::Body::Call(call) => self.call(call),
+            ast::Body::Sequence(group) => Some(self.group(group, false)),
+            ast::Body::Parallel(group) => Some(self.group(group, true)),
+            ast::Body::WithTemporalConstraint(within) => Some(self.within(within)),
+            ast::Body::Delay(wait) => Some(self.wait(wait)),
+            ast::Body::Let(binding) if binding.sequential => Some(self.binding_one_by_one(binding)),
+            ast::Body::Let(binding) => Some(self.binding(binding)),
+            ast::Body::Dotimes(dotimes) => Some(self.dotimes(dotimes)),
+            ast::Body::Label(labelled) => Some(self.label(labelled)),
+            ast::Body::Between(between) => self.between(between),
+        }
+    }
+
+    #[inline(never)]
+    fn within(&mut self, within: &ast::Within) -> Body {
+        let bounds = self.bounds(&within.bounds, "the lower bound", "the upper bound");
+        Body::Within { bounds, body: self.bodies(&within.body), operator: within.operator }
+    }
+
+    #[inline(never)]
+    fn wait(&mut self, wait: &ast::Wait) -> Body {
+        let bounds = self.bounds(&wait.bounds, "the shortest wait", "the longest wait");
+        Body::Delay { bounds, span: wait.span }
+    }
+
+    #[inline(never)]
+    fn binding(&mut self, binding: &ast::Let) -> Body {
+        let values = binding.bindings.iter().map(|(_, value)| self.argument(value)).collect();
+        let names = binding.bindings.iter().map(|(name, _)| name.name.clone()).collect();
+        Body::Let { values, body: self.inside(names, &binding.body) }
+    }
+
+    #[inline(never)]
+    fn label(&mut self, labelled: &ast::Labelled) -> Body {
+        Body::Label {
+            name: labelled.name.clone(),
+            arguments: labelled.arguments.iter().map(|value| self.argument(value)).collect(),
+            body: self.bodies(&labelled.body),
+            operator: labelled.operator,
+        }
+    }
+
+    #[inline(never)]
+    fn group(&mut self, group: &ast::Group, parallel: bool) -> Body {
+        let body = self.bodies(&group.body);
+        Body::Group { parallel, slack: group.slack, body, operator: group.operator }
+    }
+
+    /// A body in which more variables are known.
+    fn inside(&mut self, names: Vec<String>, body: &[ast::Body]) -> Vec<Body> {
+        let outside = self.scope.len();
+        self.scope.extend(names);
+        let body = self.bodies(body);
+        self.scope.truncate(outside);
+        body
+    }
+
+    /// `let*`: one variable after the other, each known to the next.
+    #[inline(never)]
+    fn binding_one_by_one(&mut self, binding: &ast::Let) -> Body {
+        let before = self.scope.len();
+        let mut values = Vec::new();
+        for (name, value) in &binding.bindings {
+            values.push(self.argument(value));
+            self.scope.push(name.name.clone());
+        }
+        let mut body = self.bodies(&binding.body);
+        self.scope.truncate(before);
+        let first = (!values.is_empty()).then(|| values.remove(0));
+        while let Some(value) = values.pop() {
+            body = vec![Body::Let { values: vec![value], body }];
+        }
+        Body::Let { values: first.into_iter().collect(), body }
+    }
+
+    #[inline(never)]
+    fn dotimes(&mut self, dotimes: &ast::Dotimes) -> Body {
+        let mut count = self.resolver().amount(&dotimes.count);
+        if let ExpressionKind::Value(_) = count.kind
+            && let Err(problem) = evaluate::count(&count, &[])
+        {
+            self.resolver().report(problem);
+            count.kind = ExpressionKind::Error;
+        }
+        let body = self.inside(vec![dotimes.variable.name.clone()], &dotimes.body);
+        Body::Repeat { count, variable: dotimes.variable.span, body, operator: dotimes.operator }
+    }
+
+    #[inline(never)]
+    fn between(&mut self, between: &ast::Between) -> Option<Body> {
+        let bounds = self.signed_bounds(&between.bounds, "the lower bound", "the upper bound");
+        let from = self.event(&between.from);
+        let to = self.event(&between.to);
+        Some(Body::Between(Box::new(Between { from: from?, to: to?, bounds })))
+    }
+
+    fn event(&mut self, event: &ast::EventOf) -> Option<EventOf> {
+        let arguments: Option<Vec<Expression>> =
+            event.arguments.as_ref().map(|values| values.iter().map(|value| self.argument(value)).collect());
+        let program = self.names.program(&event.name, &self.definition.home);
+        let is_label = event.name.package.is_none() && self.labels.contains(&event.name.name);
+        if program.is_none() && !is_label {
+            if !self.problems.has_lost_definitions() {
+                self.unknown_event(&event.name);
+            }
+            return None;
+        }
+        Some(EventOf { end: event.end, name: event.name.clone(), program, arguments, span: event.span })
+    }
+
+    fn unknown_event(&mut self, ident: &ast::Ident) {
+        let labels = self.labels.iter().map(String::as_str);
+        let programs = self.program.programs.iter().map(|program| program.name.name.as_str());
+        let name = clip(&ident.name);
+        let help = match nearest(&ident.name, labels.chain(programs)) {
+            Some(near) => format!("Did you mean `{near}`?"),
+            None => format!("Name the occurrence you mean: `(label {name} (...))`."),
+        };
+        self.problems.push(
+            Diagnostic::error(Code::UnknownLabel, ident.span, format!("nothing is labelled `{name}`"))
+                .primary("neither a label nor a program")
+                .help(help),
+        );
+    }
+
+    #[inline(never)]
+    fn call(&mut self, call: &ast::Call) -> Option<Body> {
+        let home = &self.definition.home;
+        let arguments: Vec<Expression> = call.arguments.iter().map(|value| self.argument(value)).collect();
+        let Some(program) = self.names.program(&call.program, home) else {
+            let span = call.program.span;
+            if self.problems.has_lost_definitions() {
+                return None;
+            }
+            let problem = match self.problems.wants(span.source) {
+                true => self.names.unknown_program(&call.program, home),
+                false => Diagnostic::error(Code::UnknownProgram, span, ""),
+            };
+            self.problems.push(problem);
+            return None;
+        };
+        let target = &self.program.programs[program];
+        let (wanted, given) = (target.parameters.len(), call.arguments.len());
+        if wanted != given {
+            let count = |n: usize| if n == 1 { "1 argument".to_string() } else { format!("{n} arguments") };
+            let name = clip(&target.name.name);
+            self.problems.push(
+                Diagnostic::error(
+                    Code::WrongArguments,
+                    call.span,
+                    format!("`{name}` takes {}, not {given}", count(wanted)),
+                )
+                .primary(format!("{} here", count(given)))
+                .label(target.name.span, "defined here")
+                .help(format!("Call it as `{}`.", shape(target))),
+            );
+        }
+        Some(Body::Call { program, arguments, span: call.span })
+    }
+
+    fn argument(&mut self, written: &ast::Argument) -> Expression {
+        self.resolver().argument(written)
+    }
+}
+
+fn shape(target: &ast::ControlProgram) -> String {
+    let words = std::iter::once(&target.name).chain(&target.parameters).map(|ident| clip(&ident.name));
+    format!("({})", words.collect::<Vec<_>>().join(" "))
+}

@@ -1,0 +1,121 @@
+//! Intervals with their numbers: variables are replaced by what they stand for, and the result is checked.
+
+use kirk_network::{Bound, Duration};
+
+use super::{Expander, Place};
+use crate::analyse::{negative, reversed};
+use crate::ast::{Value, ValueKind};
+use crate::code::Code;
+use crate::diagnostic::Diagnostic;
+use crate::episode::Interval;
+use crate::evaluate;
+use crate::source::Span;
+use crate::typed::{Amount, AmountValue, Bounds, Expression, ExpressionKind};
+
+impl Expander<'_> {
+    /// The numbers of an interval of durations, which are not negative.
+    pub(super) fn interval(&mut self, bounds: &Bounds, place: &Place<'_>, low: &str, high: &str) -> Interval {
+        let mut interval = self.signed_interval(bounds, place, low, high);
+        for (amount, what) in [(&bounds.lower, low), (&bounds.upper, high)] {
+            let value = match what == low {
+                true => Some(interval.lower),
+                false => interval.upper.finite(),
+            };
+            // What was known before has been reported before.
+            if let (Some(value), AmountValue::Computed(expression)) = (value, &amount.value)
+                && let Some(problem) = negative(value, argument(expression, place, amount.span), what)
+            {
+                self.problems.push(problem.label(place.call, "with the arguments of this call"));
+            }
+        }
+        interval.lower = interval.lower.max(Duration::ZERO);
+        if let Bound::Finite(upper) = interval.upper {
+            interval.upper = Bound::Finite(upper.max(interval.lower));
+        }
+        interval
+    }
+
+    /// The numbers of an interval.
+    pub(super) fn signed_interval(
+        &mut self,
+        bounds: &Bounds,
+        place: &Place<'_>,
+        low: &str,
+        high: &str,
+    ) -> Interval {
+        let lower = match self.bound(&bounds.lower, place, low) {
+            Some(Bound::Finite(lower)) => lower,
+            Some(Bound::Infinite) => {
+                self.problems.push(
+                    Diagnostic::error(Code::InfiniteLower, bounds.lower.span, format!("{low} is infinite"))
+                        .primary("this would never be over")
+                        .label(place.call, "with the arguments of this call")
+                        .help("Only an upper bound may be `:infinity`."),
+                );
+                Duration::ZERO
+            }
+            None => Duration::ZERO,
+        };
+        let mut upper = self.bound(&bounds.upper, place, high).unwrap_or(Bound::Finite(lower));
+        if let Bound::Finite(most) = upper
+            && let Some(problem) = reversed(lower, most, bounds, low, high)
+        {
+            self.problems.push(problem.label(place.call, "with the arguments of this call"));
+            upper = Bound::Finite(lower);
+        }
+        let (lower_span, upper_span) = (bounds.lower.span, bounds.upper.span);
+        Interval { lower, upper, lower_span, upper_span, span: bounds.span }
+    }
+
+    /// The values of arguments.
+    pub(super) fn values(&mut self, expressions: &[Expression], place: &Place<'_>) -> Vec<Value> {
+        expressions.iter().map(|expression| self.value(expression, place)).collect()
+    }
+
+    fn value(&mut self, expression: &Expression, place: &Place<'_>) -> Value {
+        evaluate::evaluate(expression, &place.variables).unwrap_or_else(|problem| {
+            self.report(problem, place);
+            Value { kind: ValueKind::Nil, span: expression.span }
+        })
+    }
+
+    fn bound(&mut self, amount: &Amount, place: &Place<'_>, what: &str) -> Option<Bound> {
+        match &amount.value {
+            AmountValue::Known(bound) => Some(*bound),
+            AmountValue::Error => None,
+            AmountValue::Computed(expression) => {
+                let bound = evaluate::bound(expression, &place.variables, what);
+                bound.map_err(|problem| self.report(problem, place)).ok()
+            }
+        }
+    }
+
+    /// How many times, as far as that makes sense.
+    pub(super) fn count(&mut self, expression: &Expression, place: &Place<'_>) -> u64 {
+        evaluate::count(expression, &place.variables).unwrap_or_else(|problem| {
+            self.report(problem, place);
+            0
+        })
+    }
+
+    fn report(&mut self, problem: Option<Diagnostic>, place: &Place<'_>) {
+        if let Some(problem) = problem {
+            let here =
+                place.call == problem.span || problem.labels.iter().any(|label| label.span == place.call);
+            self.problems.push(match here {
+                true => problem,
+                false => problem.label(place.call, "with the arguments of this call"),
+            });
+        }
+    }
+}
+
+/// Where the value of a variable was given; of anything else, where it stands.
+fn argument(expression: &Expression, place: &Place<'_>, otherwise: Span) -> Span {
+    match &expression.kind {
+        ExpressionKind::Variable(index, _) => {
+            place.variables.get(*index).map_or(otherwise, |value| value.span)
+        }
+        _ => otherwise,
+    }
+}

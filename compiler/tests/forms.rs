@@ -1,0 +1,90 @@
+//! Every file in `tests/rmpl/good` is a case by existing: it compiles, and to this network. Each is about one form.
+#![allow(clippy::disallowed_methods, clippy::unwrap_used, reason = "tests read the cases")]
+
+mod common;
+
+use kirk_compiler::{Severity, explain_conflict, to_sexpr};
+
+#[test]
+fn every_form_is_compiled_to_what_it_means() {
+    let sources = common::sources("tests/rmpl/good");
+    assert!(sources.len() >= 8, "the cases are gone: {sources:?}");
+    for (name, text) in sources {
+        let compiled = common::compile_with(&text, &common::options_in(&text));
+        let said = common::diagnostics(&text, &compiled.diagnostics);
+        assert!(compiled.diagnostics.iter().all(|d| d.severity != Severity::Error), "{name}:\n{said}");
+        let plan = compiled.plan.expect("a plan");
+        let result = format!(
+            "{text}\n--- ast\n{}\n--- network\n{}--- diagnostics\n{said}",
+            to_sexpr(&compiled.ast).unwrap(),
+            common::network(&plan),
+        );
+        insta::with_settings!({prepend_module_to_snapshot => false, snapshot_path => "snapshots/good", omit_expression => true}, {
+            insta::assert_snapshot!(name, result);
+        });
+    }
+}
+
+/// The benchmark of figure 5.2 of the thesis for any number of rovers and antennas.
+#[test]
+fn the_antennas_have_every_constraint_of_the_figure_for_any_number_of_rovers() {
+    let found = common::sources("examples/rmpl").into_iter().find(|(name, _)| name == "antennas");
+    let (_, example) = found.expect("the example");
+    let lines = example.lines().filter(|line| !line.is_empty() && !line.starts_with(';'));
+    assert!(lines.count() < 40);
+    for (rovers, antennas) in [(1, 1), (2, 1), (1, 3), (4, 5), (12, 10)] {
+        let text = example
+            .replace("+rovers+ 8)", &format!("+rovers+ {rovers})"))
+            .replace("+antennas+ 2)", &format!("+antennas+ {antennas})"));
+        let compiled = common::compile(&text);
+        let plan =
+            compiled.plan.unwrap_or_else(|| panic!("{}", common::diagnostics(&text, &compiled.diagnostics)));
+        let rounds = rovers * antennas;
+        assert_eq!(plan.network.contingents().len(), 2 * rounds);
+        let across: Vec<&str> = (plan.origins.requirements.iter())
+            .filter(|origin| origin.kind == kirk_compiler::OriginKind::Between)
+            .map(|origin| origin.subject.as_str())
+            .collect();
+        assert_eq!(across.len(), (rovers - 1) * antennas);
+        // The confirmation of rover 1 for antenna 0 comes right after those of rover 0.
+        if (rovers, antennas) == (4, 5) {
+            assert_eq!(across[0], "from the end of `confirm` to the start of `confirm#6`");
+        }
+    }
+}
+
+#[test]
+fn a_conflict_shows_what_between_says() {
+    let text = "(define-control-program drive ()
+  (declare (primitive) (duration (simple :lower-bound 15 :upper-bound 20) :contingent t)))
+(define-control-program main ()
+  (sequence (:slack t)
+    (label out (drive))
+    (delay 5)
+    (label back (drive)))
+  (between (start out) (start back) (simple-temporal :upper-bound 24)))
+";
+    let compiled = common::compile(text);
+    let plan = compiled.plan.expect("a plan");
+    let Ok(kirk_network::Verdict::Uncontrollable(conflict)) = kirk_network::check(&plan.network) else {
+        panic!("this can be executed")
+    };
+    let problem = explain_conflict(&conflict, &plan.network, &plan.origins, plan.entry);
+    insta::assert_snapshot!(common::diagnostics(text, &[problem]));
+}
+
+#[test]
+fn label_names_are_names_of_events() {
+    let text = "(define-control-program a () (declare (primitive)))
+(define-control-program main ()
+  (sequence (:slack t) (label first (a)) (dotimes (i 2) (label (next i) (a))) (label A (a)) (label twice (a)))
+  (label twice#2 (a)) (dotimes (i 1) (label twice (a))))";
+    let network = common::compile(text).plan.expect("a plan").network;
+    let find = |name| network.find(name).map(|event| network.id(event).to_string());
+    assert_eq!(find("first:start").as_deref(), Some("a:start"));
+    assert_eq!(find("+FIRST::END+").as_deref(), Some("a:end"));
+    assert_eq!(find("next/1:end").as_deref(), Some("a#3:end"));
+    assert_eq!(find("a:start").as_deref(), Some("a:start"), "the occurrence has the name, not the label");
+    assert_eq!(find("twice:start"), None, "two are called that");
+    assert_eq!(find("twice#2:start").as_deref(), Some("a#6:start"));
+}

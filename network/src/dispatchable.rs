@@ -7,12 +7,14 @@
 //! 2. an event that must come before a contingent one must come before it even if Nature takes the least;
 //! 3. of the all-pairs shortest paths only those stay that no other edge makes needless, rigid groups first.
 
+use std::collections::VecDeque;
+
 use petgraph::algo::kosaraju_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
 
 use crate::controllability::{Solution, Wait, solve};
-use crate::heap::Heap;
-use crate::stnu::{Edge, Link, NONE, Rows, Stnu, TooLarge, add};
+use crate::radix::RadixQueue;
+use crate::stnu::{Edge, Link, NONE, Rows, Stnu, TooLarge, add, within_limit};
 
 /// A dispatchable network: ordinary edges, and waits for contingent events.
 ///
@@ -49,13 +51,56 @@ pub fn dispatchable(stnu: &Stnu) -> Result<Option<Dispatchable>, TooLarge> {
     let before = before_the_least(stnu, &edges, &potential)?;
     edges.extend(before);
     let rigid = Rigid::new(stnu, &edges, &potential);
-    let mut kept = undominated(&rigid.contracted(&edges)?, &potential)?;
+    // What Nature keeps by herself helps to make other edges needless, and is needless itself.
+    let nature = rigid.contracted(&nature_keeps(stnu))?;
+    edges.extend(nature_keeps(stnu));
+    let mut kept = undominated(&rigid.contracted(&edges)?, potential)?;
+    kept.retain(|edge| {
+        nature.binary_search_by_key(&(edge.from, edge.to), |known| (known.from, known.to)).is_err()
+    });
     kept.extend(rigid.spokes());
     kept.sort_unstable_by_key(|edge| (edge.from, edge.to));
-    // The others are held at their distance from their leader, which waits for them.
-    let waits = waits.into_iter().filter(|wait| rigid.leader[wait.waiter as usize] == wait.waiter).collect();
+    // The others are held at their distance from their leader, which waits for them; and what comes after a contingent
+    // event in any case does not wait for it.
+    let needed = |wait: &Wait| {
+        let comes_after = wait.weight < -stnu.links[wait.link as usize].upper;
+        rigid.leader[wait.waiter as usize] == wait.waiter && !comes_after
+    };
+    let waits = waits.into_iter().filter(needed).collect();
     let simultaneous = rigid.simultaneous();
     Ok(Some(Dispatchable { nodes: stnu.nodes, links: stnu.links.clone(), edges: kept, waits, simultaneous }))
+}
+
+/// `C - A` is in `[x, y]` for each link (A, x, y, C).
+fn nature_keeps(stnu: &Stnu) -> Vec<Edge> {
+    let both = |link: &Link| {
+        [
+            Edge { from: link.activation, to: link.contingent, weight: link.upper },
+            Edge { from: link.contingent, to: link.activation, weight: -link.lower },
+        ]
+    };
+    stnu.links.iter().flat_map(both).collect()
+}
+
+/// Lowers potentials until they fit all edges: Bellman-Ford from what is almost right. There must be no negative cycle.
+fn fit(edges: &[Edge], mut potential: Vec<i64>) -> Result<Vec<i64>, TooLarge> {
+    let incoming = Rows::new(potential.len() as u32, edges.iter().map(|edge| edge.to));
+    let mut open: VecDeque<u32> = (0..potential.len() as u32).collect();
+    let mut queued = vec![true; potential.len()];
+    while let Some(node) = open.pop_front() {
+        queued[node as usize] = false;
+        let here = within_limit(potential[node as usize])?;
+        for &edge in incoming.of(node) {
+            let Edge { from, weight, .. } = edges[edge as usize];
+            if weight + here < potential[from as usize] {
+                potential[from as usize] = weight + here;
+                if !std::mem::replace(&mut queued[from as usize], true) {
+                    open.push_back(from);
+                }
+            }
+        }
+    }
+    Ok(potential)
 }
 
 /// For each link (A, x, y, C), from C forward to the first nodes X at a negative distance d: they come before C, so at
@@ -63,15 +108,21 @@ pub fn dispatchable(stnu: &Stnu) -> Result<Option<Dispatchable>, TooLarge> {
 fn before_the_least(stnu: &Stnu, edges: &[Edge], potential: &[i64]) -> Result<Vec<Edge>, TooLarge> {
     let mut all = edges.to_vec();
     all.extend(stnu.links.iter().map(|l| Edge { from: l.activation, to: l.contingent, weight: l.lower }));
-    let outgoing = Rows::new(stnu.nodes, all.iter().map(|edge| edge.from));
-    let mut heap = Heap::new(stnu.nodes);
+    let outgoing = Outgoing::new(&all, potential);
+    let mut queue = RadixQueue::new();
+    let mut least = vec![i64::MAX; potential.len()];
     let mut found = Vec::new();
     for link in &stnu.links {
-        heap.clear();
-        heap.push(link.contingent, 0);
+        queue.restart(0);
+        least.fill(i64::MAX);
+        queue.push(0, link.contingent);
+        least[link.contingent as usize] = 0;
         let base = potential[link.contingent as usize];
-        while let Some((key, node)) = heap.pop() {
-            let distance = key - potential[node as usize] + base;
+        while let Some((key, node)) = queue.pop() {
+            if key > least[node as usize] {
+                continue;
+            }
+            let distance = within_limit(key - potential[node as usize] + base)?;
             if distance < 0 {
                 let weight = add(link.lower, distance)?;
                 if node != link.activation {
@@ -79,13 +130,43 @@ fn before_the_least(stnu: &Stnu, edges: &[Edge], potential: &[i64]) -> Result<Ve
                 }
                 continue;
             }
-            for &edge in outgoing.of(node) {
-                let Edge { to, weight, .. } = all[edge as usize];
-                heap.push(to, add(key, weight + potential[to as usize] - potential[node as usize])?);
+            for &(to, reduced) in outgoing.of(node) {
+                let candidate = key + reduced;
+                if candidate < least[to as usize] {
+                    least[to as usize] = candidate;
+                    queue.push(candidate, to);
+                }
             }
         }
     }
     Ok(found)
+}
+
+/// Edges by source, in one piece, their weights reduced by the potentials: none is negative.
+struct Outgoing {
+    start: Vec<u32>,
+    edges: Vec<(u32, i64)>,
+}
+
+impl Outgoing {
+    fn new(edges: &[Edge], potential: &[i64]) -> Outgoing {
+        let nodes = potential.len() as u32;
+        let rows = Rows::new(nodes, edges.iter().map(|edge| edge.from));
+        let mut outgoing = Outgoing { start: vec![0], edges: Vec::with_capacity(edges.len()) };
+        for node in 0..nodes {
+            outgoing.edges.extend(rows.of(node).iter().map(|&edge| {
+                let Edge { from, to, weight } = edges[edge as usize];
+                (to, weight + potential[to as usize] - potential[from as usize])
+            }));
+            outgoing.start.push(outgoing.edges.len() as u32);
+        }
+        outgoing
+    }
+
+    #[inline]
+    fn of(&self, node: u32) -> &[(u32, i64)] {
+        &self.edges[self.start[node as usize] as usize..self.start[node as usize + 1] as usize]
+    }
 }
 
 /// Groups of nodes at fixed distances from one another, each with a leader: its earliest node.
@@ -161,83 +242,64 @@ impl Rigid {
 ///
 /// From a source u, a node v at a distance d(v) >= 0 is needless if a shortest path to it passes a node w with
 /// d(w) <= d(v); one at a distance < 0 if a shortest path to it passes a node w with d(w) < 0.
-fn undominated(edges: &[Edge], potential: &[i64]) -> Result<Vec<Edge>, TooLarge> {
-    let nodes = potential.len() as u32;
-    let outgoing = Rows::new(nodes, edges.iter().map(|edge| edge.from));
-    let reduced = |edge: &Edge| edge.weight + potential[edge.to as usize] - potential[edge.from as usize];
-    // Nodes in an order in which every tight edge leads forward, so that nodes at the same reduced distance are
-    // settled before those that are reached through them.
-    let order = tight_order(nodes, edges, potential);
-    let mut by_rank = vec![0_u32; nodes as usize];
-    for (node, &rank) in order.iter().enumerate() {
-        by_rank[rank as usize] = node as u32;
+fn undominated(edges: &[Edge], potential: Vec<i64>) -> Result<Vec<Edge>, TooLarge> {
+    /// What the search from one source knows of a node.
+    #[derive(Clone, Copy)]
+    struct Reached {
+        /// The reduced distance.
+        key: i64,
+        /// The least distance of a node between the source and this one on a shortest path.
+        between: i64,
+        source: u32,
+        /// Its edges have been followed with this `between`.
+        settled: bool,
     }
-    let mut heap = Heap::new(nodes);
-    let mut distance = vec![i64::MAX; nodes as usize];
-    // The least distance of a node between u and v on a shortest path.
-    let mut between = vec![i64::MAX; nodes as usize];
+    let potential = fit(edges, potential)?;
+    let outgoing = Outgoing::new(edges, &potential);
+    let mut queue = RadixQueue::new();
+    let mut nodes =
+        vec![Reached { key: 0, between: i64::MAX, source: NONE, settled: false }; potential.len()];
+    let mut reached = Vec::new();
     let mut kept = Vec::new();
-    for source in 0..nodes {
+    for source in 0..potential.len() as u32 {
         if outgoing.of(source).is_empty() {
             continue;
         }
-        heap.clear();
-        distance.fill(i64::MAX);
-        heap.push(order[source as usize], 0);
-        distance[source as usize] = 0;
-        while let Some((key, rank)) = heap.pop() {
-            let node = by_rank[rank as usize];
-            let real = key - potential[node as usize] + potential[source as usize];
-            let least_here = if node == source {
-                i64::MAX
-            } else {
-                let least = between[node as usize];
-                let dominated = if real >= 0 { least <= real } else { least < 0 };
-                if !dominated {
-                    kept.push(Edge { from: source, to: node, weight: real });
+        queue.restart(0);
+        reached.clear();
+        nodes[source as usize] = Reached { key: 0, between: i64::MAX, source, settled: false };
+        queue.push(0, source);
+        let base = potential[source as usize];
+        while let Some((key, node)) = queue.pop() {
+            let here = &mut nodes[node as usize];
+            if here.settled || key > here.key {
+                continue;
+            }
+            here.settled = true;
+            let real = within_limit(key - potential[node as usize] + base)?;
+            let least = if node == source { i64::MAX } else { here.between.min(real) };
+            for &(to, reduced) in outgoing.of(node) {
+                let candidate = key + reduced;
+                let there = &mut nodes[to as usize];
+                if there.source != source {
+                    reached.push(to);
+                } else if candidate > there.key || candidate == there.key && least >= there.between {
+                    continue;
                 }
-                least.min(real)
-            };
-            for &edge in outgoing.of(node) {
-                let edge = &edges[edge as usize];
-                let to = edge.to as usize;
-                let candidate = add(key, reduced(edge))?;
-                if candidate < distance[to] {
-                    distance[to] = candidate;
-                    between[to] = least_here;
-                    heap.push(order[to], candidate);
-                } else if candidate == distance[to] && edge.to != source {
-                    between[to] = between[to].min(least_here);
-                }
+                // At the same distance a node can be settled before all shortest paths to it are known; then it is
+                // settled again. There is no cycle of weight 0 on which that could go on for ever.
+                *there = Reached { key: candidate, between: least, source, settled: false };
+                queue.push(candidate, to);
+            }
+        }
+        for &node in reached.iter().filter(|&&node| node != source) {
+            let Reached { key, between, .. } = nodes[node as usize];
+            let real = key - potential[node as usize] + base;
+            let dominated = if real >= 0 { between <= real } else { between < 0 };
+            if !dominated {
+                kept.push(Edge { from: source, to: node, weight: real });
             }
         }
     }
     Ok(kept)
-}
-
-/// The rank of each node in a topological order of the tight edges.
-fn tight_order(nodes: u32, edges: &[Edge], potential: &[i64]) -> Vec<u32> {
-    let tight = |edge: &&Edge| potential[edge.from as usize] == edge.weight + potential[edge.to as usize];
-    let mut waiting = vec![0_u32; nodes as usize];
-    let kept: Vec<Edge> = edges.iter().filter(tight).copied().collect();
-    for edge in &kept {
-        waiting[edge.to as usize] += 1;
-    }
-    let outgoing = Rows::new(nodes, kept.iter().map(|edge| edge.from));
-    let mut ready: Vec<u32> = (0..nodes).rev().filter(|&node| waiting[node as usize] == 0).collect();
-    let mut rank = vec![0; nodes as usize];
-    let mut next = 0;
-    while let Some(node) = ready.pop() {
-        rank[node as usize] = next;
-        next += 1;
-        for &edge in outgoing.of(node) {
-            let to = kept[edge as usize].to;
-            waiting[to as usize] -= 1;
-            if waiting[to as usize] == 0 {
-                ready.push(to);
-            }
-        }
-    }
-    debug_assert_eq!(next, nodes, "rigid groups are contracted, so tight edges form no cycle");
-    rank
 }

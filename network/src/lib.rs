@@ -59,7 +59,6 @@ pub mod dispatchable;
 pub mod dot;
 pub mod generate;
 pub mod graphml;
-mod heap;
 pub mod json;
 pub mod merge;
 pub mod model;

@@ -8,7 +8,7 @@ use serde_json::value::RawValue;
 use crate::controllability::Wait;
 use crate::dispatchable::Dispatchable;
 use crate::model::{ContingentLink, Delay, Event, EventId, ModelError, Name, Network, Requirement};
-use crate::stnu::{Edge, Link};
+use crate::stnu::{Edge, Link, NONE};
 use crate::time::{Bound, Duration};
 
 /// The `format` of the files read and written here.
@@ -331,7 +331,7 @@ impl Serialize for Document<'_> {
 /// Writes a dispatchable network (`kirk-dispatchable/1`) as one line of JSON.
 ///
 /// An edge says `to - from <= weight`; a wait says that `event` comes after `after`, and until `for` has happened not
-/// before `until` seconds after it.
+/// before `until` seconds after it; an event that is simultaneous with another is executed at the same time, after it.
 pub fn write_dispatchable(net: &Dispatchable, name: &str, label: impl Fn(u32) -> String) -> String {
     #[derive(Serialize)]
     struct File<'a> {
@@ -342,6 +342,7 @@ pub fn write_dispatchable(net: &Dispatchable, name: &str, label: impl Fn(u32) ->
         events: Vec<String>,
         edges: Vec<EdgeFile>,
         waits: Vec<WaitFile>,
+        simultaneous: Vec<TogetherFile>,
         contingents: Vec<LinkFile>,
     }
     #[derive(Serialize)]
@@ -356,6 +357,11 @@ pub fn write_dispatchable(net: &Dispatchable, name: &str, label: impl Fn(u32) ->
         r#for: String,
         until: Seconds,
         after: String,
+    }
+    #[derive(Serialize)]
+    struct TogetherFile {
+        event: String,
+        with: String,
     }
     #[derive(Serialize)]
     struct LinkFile {
@@ -382,6 +388,9 @@ pub fn write_dispatchable(net: &Dispatchable, name: &str, label: impl Fn(u32) ->
         lower: micros(link.lower),
         upper: micros(link.upper),
     };
+    let together = |(node, &leader): (usize, &u32)| {
+        (leader != NONE).then(|| TogetherFile { event: label(node as u32), with: label(leader) })
+    };
     let file = File {
         format: "kirk-dispatchable/1",
         name,
@@ -390,6 +399,7 @@ pub fn write_dispatchable(net: &Dispatchable, name: &str, label: impl Fn(u32) ->
         events: (0..net.nodes).map(&label).collect(),
         edges: net.edges.iter().map(edge).collect(),
         waits: net.waits.iter().map(wait).collect(),
+        simultaneous: net.simultaneous.iter().enumerate().filter_map(together).collect(),
         contingents: net.links.iter().map(link).collect(),
     };
     serde_json::to_string(&file)

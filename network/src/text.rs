@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use crate::dispatchable::Dispatchable;
 use crate::model::{Delay, EventId, Network};
+use crate::stnu::NONE;
 use crate::time::{Bound, Duration};
 
 /// A delay STNU or a plain one.
@@ -76,6 +77,13 @@ pub fn dispatchable(net: &Dispatchable, label: impl Fn(u32) -> String) -> String
             seconds(-wait.weight),
             label(link.activation)
         );
+    }
+    let pairs = net.simultaneous.iter().enumerate().filter(|&(_, &leader)| leader != NONE);
+    for (at, (node, &leader)) in pairs.enumerate() {
+        if at == 0 {
+            let _ = writeln!(text, "\nsimultaneous");
+        }
+        let _ = writeln!(text, "  {} with {}, right after it", label(node as u32), label(leader));
     }
     if !net.links.is_empty() {
         let _ = writeln!(text, "\ncontingent links");

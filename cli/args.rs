@@ -70,9 +70,10 @@ pub(crate) enum TextOrJson {
 
 #[derive(Debug, Args)]
 pub(crate) struct Run {
-    /// The mission: RMPL (.rmpl, .lisp), a network (.json, .stnu, .plainstnu), or `-` for standard input.
-    #[arg(value_name = "FILE")]
-    pub(crate) file: String,
+    /// The mission: RMPL (.rmpl, .lisp; several files are one program), a network (.json, .stnu, .plainstnu), or `-` for
+    /// standard input.
+    #[arg(value_name = "FILE", required = true)]
+    pub(crate) files: Vec<String>,
     #[command(flatten)]
     pub(crate) selection: Selection,
     /// Simulate in virtual time.
@@ -157,9 +158,9 @@ pub(crate) enum Delays {
 
 #[derive(Debug, Args)]
 pub(crate) struct Compile {
-    /// The mission or network, or `-` for standard input.
-    #[arg(value_name = "FILE")]
-    pub(crate) file: String,
+    /// The mission or network, or `-` for standard input; several files of RMPL are one program.
+    #[arg(value_name = "FILE", required = true)]
+    pub(crate) files: Vec<String>,
     #[command(flatten)]
     pub(crate) selection: Selection,
     /// Which stage to print.
@@ -201,9 +202,9 @@ pub(crate) struct Verify {
     /// The recorded execution (`kirk run --format json`).
     #[arg(value_name = "EXECUTION")]
     pub(crate) execution: String,
-    /// The mission or network it is checked against.
-    #[arg(value_name = "FILE")]
-    pub(crate) file: String,
+    /// The mission or network it is checked against; several files of RMPL are one program.
+    #[arg(value_name = "FILE", required = true)]
+    pub(crate) files: Vec<String>,
     /// The package whose programs are meant; needed only when a file defines more than one.
     #[arg(short = 'P', long, value_name = "NAME")]
     pub(crate) package: Option<String>,

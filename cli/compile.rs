@@ -11,13 +11,13 @@ use serde::Serialize;
 
 use crate::args::{Common, Compile, Stage, StageFormat};
 use crate::check::{judge, too_large};
-use crate::input::{Input, load};
+use crate::input::{Input, load_all};
 use crate::json::line;
 use crate::output::{Status, complain, print};
 use crate::report::Reporter;
 
 pub(crate) fn compile(arguments: &Compile, common: &Common) -> io::Result<Status> {
-    let mut input = load(&arguments.file, &arguments.selection);
+    let mut input = load_all(&arguments.files, &arguments.selection);
     let emitted = emit(arguments, &mut input);
     Reporter::new(&input.sources).show(&input.diagnostics, common)?;
     let text = match emitted {
@@ -105,7 +105,7 @@ fn emit_program(arguments: &Compile, input: &Input) -> Result<String, Refusal> {
         let stage = stage_name(arguments.emit);
         return Err(Refusal::Options(format!(
             "`{}` is a network; it has no {stage}. Stages of a network: stnu, reduced, dispatchable",
-            arguments.file
+            arguments.files.join(" ")
         )));
     };
     if input.diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error) {

@@ -10,9 +10,9 @@ use kirk_network::{Network, graphml, json, plain};
 
 use crate::args::Selection;
 
-/// Everything that became of one input file.
+/// Everything that became of one input file, or of several that are one program.
 pub(crate) struct Input {
-    /// The file, for diagnostics to point into.
+    /// The files, for diagnostics to point into.
     pub(crate) sources: Vec<Source>,
     /// What there is to say about it.
     pub(crate) diagnostics: Vec<Diagnostic>,
@@ -38,38 +38,74 @@ type Reader = fn(&str) -> Result<Network, Vec<ReadProblem>>;
 
 /// Reads and compiles an input file; `-` is standard input.
 pub(crate) fn load(file: &str, selection: &Selection) -> Input {
-    let name = if file == "-" { "<stdin>" } else { file };
-    let text = match read(file, LARGEST_NETWORK) {
-        Ok(bytes) => match String::from_utf8(bytes) {
-            Ok(text) => text,
-            Err(error) => {
-                let line = error.as_bytes()[..error.utf8_error().valid_up_to()]
-                    .iter()
-                    .filter(|&&b| b == b'\n')
-                    .count();
-                let message = format!(
-                    "this is not UTF-8 text (line {}, byte {})",
-                    line + 1,
-                    error.utf8_error().valid_up_to()
-                );
-                return Input::broken(name, Diagnostic::error(Code::NotText, Span::default(), message).help(
-                    "kirk reads RMPL and networks as text; is this the right file, or a compiled or compressed one?",
-                ));
-            }
-        },
-        Err(message) => {
-            return Input::broken(name, Diagnostic::error(Code::CannotRead, Span::default(), message));
-        }
+    let text = match text(file) {
+        Ok(text) => text,
+        Err(diagnostic) => return Input::broken(shown(file), diagnostic),
     };
     match kind(file, &text) {
-        Kind::Network(reader) => network(name, text, reader),
-        Kind::Rmpl if text.len() as u64 > LARGEST_PROGRAM => {
-            let message =
-                format!("this file has {} bytes; kirk reads programs of up to {LARGEST_PROGRAM}", text.len());
-            Input::broken(name, Diagnostic::error(Code::TooLong, Span::default(), message))
-        }
-        Kind::Rmpl => program(name, text, selection),
+        Kind::Network(reader) => network(shown(file), text, reader),
+        Kind::Rmpl => program(vec![Source::new(shown(file), text)], selection),
     }
+}
+
+/// Reads several files and compiles them as one program.
+pub(crate) fn load_all(files: &[String], selection: &Selection) -> Input {
+    if let [file] = files {
+        return load(file, selection);
+    }
+    let mut sources = Vec::new();
+    let mut diagnostics = Vec::new();
+    for (index, file) in files.iter().enumerate() {
+        let place = Span::new(index as u32, 0, 0);
+        let problem = |message| Diagnostic::error(Code::CannotRead, place, message);
+        let text = if files[..index].contains(file) {
+            Err(problem(format!("`{}` is given twice", shown(file))))
+        } else {
+            text(file).map_err(|diagnostic| Diagnostic { span: place, ..diagnostic })
+        };
+        let text = text.unwrap_or_else(|diagnostic| {
+            diagnostics.push(diagnostic);
+            String::new()
+        });
+        if !text.is_empty() && matches!(kind(file, &text), Kind::Network(_)) {
+            let message = format!("`{}` is a network and cannot be part of a program", shown(file));
+            diagnostics.push(
+                problem(message).help("Several files are compiled as one program. Give a network alone."),
+            );
+        }
+        sources.push(Source::new(shown(file), text));
+    }
+    if diagnostics.is_empty() {
+        program(sources, selection)
+    } else {
+        Input { sources, diagnostics, compilation: None, network: None, origins: None }
+    }
+}
+
+/// What to call a file in messages.
+fn shown(file: &str) -> &str {
+    if file == "-" { "<stdin>" } else { file }
+}
+
+/// The text of an input file.
+pub(crate) fn text(file: &str) -> Result<String, Diagnostic> {
+    let start = Span::default();
+    let bytes =
+        read(file, LARGEST_NETWORK).map_err(|message| Diagnostic::error(Code::CannotRead, start, message))?;
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let line = error.as_bytes()[..valid].iter().filter(|&&b| b == b'\n').count();
+        let message = format!("this is not UTF-8 text (line {}, byte {valid})", line + 1);
+        Diagnostic::error(Code::NotText, start, message).help(
+            "kirk reads RMPL and networks as text; is this the right file, or a compiled or compressed one?",
+        )
+    })?;
+    if text.len() as u64 > LARGEST_PROGRAM && matches!(kind(file, &text), Kind::Rmpl) {
+        let message =
+            format!("this file has {} bytes; kirk reads programs of up to {LARGEST_PROGRAM}", text.len());
+        return Err(Diagnostic::error(Code::TooLong, start, message));
+    }
+    Ok(text)
 }
 
 /// The extension decides; without a known one, the first character.
@@ -117,8 +153,7 @@ pub(crate) fn read(file: &str, most: u64) -> Result<Vec<u8>, String> {
     }
 }
 
-fn program(name: &str, text: String, selection: &Selection) -> Input {
-    let sources = vec![Source::new(name, text)];
+fn program(sources: Vec<Source>, selection: &Selection) -> Input {
     let options = Options { package: selection.package.clone(), entry: selection.entry.clone() };
     let mut compilation = compile(&sources, &options);
     let diagnostics = std::mem::take(&mut compilation.diagnostics);

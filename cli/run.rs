@@ -13,7 +13,7 @@ use serde::de::{Deserializer, MapAccess, Visitor};
 use crate::args::{Common, Nature, Run, StrategyName, TextOrJson};
 use crate::check::too_large;
 use crate::conflict;
-use crate::input::{load, read};
+use crate::input::{load_all, read};
 use crate::json::line;
 use crate::output::{Status, complain, print};
 use crate::report::Reporter;
@@ -24,7 +24,7 @@ pub(crate) fn run(arguments: &Run, common: &Common) -> io::Result<Status> {
         complain("kirk cannot execute in real time yet; `--simulate` executes the mission in virtual time");
         return Ok(Status::Wrong);
     }
-    let mut input = load(&arguments.file, &arguments.selection);
+    let mut input = load_all(&arguments.files, &arguments.selection);
     let plan = match input.network.as_ref().map(Plan::new) {
         None => None,
         Some(Ok(plan)) => Some(Ok(plan)),

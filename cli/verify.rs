@@ -8,7 +8,7 @@ use kirk_runtime::{Execution, verify as check};
 use serde::Serialize;
 
 use crate::args::{Common, Selection, TextOrJson, Verify};
-use crate::input::{load, read};
+use crate::input::{load_all, read};
 use crate::json::line;
 use crate::output::{Status, print, print_line};
 use crate::report::Reporter;
@@ -31,9 +31,10 @@ pub(crate) fn verify(arguments: &Verify, common: &Common) -> io::Result<Status> 
         (None, None) => "main".to_string(),
     };
     let selection = Selection { package: arguments.package.clone(), entry };
-    let input = load(&arguments.file, &selection);
+    let input = load_all(&arguments.files, &selection);
     Reporter::new(&input.sources).show(&input.diagnostics, common)?;
     let (Some(execution), Some(network)) = (execution, &input.network) else { return Ok(Status::Wrong) };
+    let file = arguments.files.join(" ");
     let violations = check(network, &execution);
     match arguments.format {
         TextOrJson::Json => {
@@ -42,7 +43,7 @@ pub(crate) fn verify(arguments: &Verify, common: &Common) -> io::Result<Status> 
             let document = VerifyJson {
                 format: "kirk-verify/1",
                 execution: &arguments.execution,
-                file: &arguments.file,
+                file: &file,
                 verified: violations.len() == 0,
                 violations: violations.collect(),
             };
@@ -58,7 +59,7 @@ pub(crate) fn verify(arguments: &Verify, common: &Common) -> io::Result<Status> 
                 count => format!("violates, in {count} places,"),
             };
             if !common.quiet {
-                print_line(&format!("{} {verdict} {}", arguments.execution, arguments.file))?;
+                print_line(&format!("{} {verdict} {}", arguments.execution, file))?;
             }
         }
     }

@@ -182,17 +182,15 @@ fn entry(program: &ast::Program, names: &Names, options: &Options, problems: &mu
             vec![text]
         }
         None if defined.len() > 1 => {
-            let second = program.packages.iter().find(|p| p.name.name == defined[1]);
-            problems.push(
-                Diagnostic::error(
-                    Code::PackageNotChosen,
-                    second.map_or(start, |package| package.name.span),
-                    "the source defines several packages and none is chosen",
-                )
-                .primary("the second one")
-                .help(format!("Choose one with `-P`: `{}`.", defined.join("`, `"))),
-            );
-            return None;
+            // If just one of them has the program, that is the one.
+            let has = |home: &str| program.programs.iter().any(|p| p.home == home && p.name.name == wanted);
+            match defined.iter().filter(|home| has(home)).collect::<Vec<_>>().as_slice() {
+                [only] => vec![only.to_string()],
+                _ => {
+                    problems.push(not_chosen(program, &defined));
+                    return None;
+                }
+            }
         }
         None => {
             // One package or none, whether declared or only entered.
@@ -239,4 +237,15 @@ fn entry(program: &ast::Program, names: &Names, options: &Options, problems: &mu
         );
     }
     found
+}
+
+fn not_chosen(program: &ast::Program, defined: &[&str]) -> Diagnostic {
+    let second = program.packages.iter().find(|p| p.name.name == defined[1]);
+    Diagnostic::error(
+        Code::PackageNotChosen,
+        second.map_or(Span::default(), |package| package.name.span),
+        "the source defines several packages and none is chosen",
+    )
+    .primary("the second one")
+    .help(format!("Choose one with `-P`: `{}`.", defined.join("`, `")))
 }

@@ -68,7 +68,10 @@ pub(super) fn check_use(model: &Model, entry: usize, is_main: bool, problems: &m
         }
     }
     let entry_name = clip(&model.programs[entry].name.name);
-    for (program, _) in model.programs.iter().zip(&used).filter(|(_, used)| !**used) {
+    // Other sources are libraries: nobody uses all of one.
+    let source = model.programs[entry].name.span.source;
+    let here = model.programs.iter().zip(&used).filter(|(program, _)| program.name.span.source == source);
+    for (program, _) in here.filter(|(_, used)| !**used) {
         problems.push(
             Diagnostic::warning(
                 Code::NeverUsed,

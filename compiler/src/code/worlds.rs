@@ -12,7 +12,9 @@ name, or chosen with `-P`.",
 };
 
 pub(super) const PACKAGE_NOT_CHOSEN: Page = Page {
-    meaning: "The source defines several packages, and each may have a program to start from. Say which one is meant with
+    meaning:
+        "The source defines several packages, and none of them, or more than one, has a program of the name to
+start from. Say which one is meant with
 `-P NAME`. With one package or none, `-P` is not needed.",
     wrong: r##"(defpackage #:astronaut)
 (defpackage #:robot)"##,

@@ -20,21 +20,35 @@
 use kirk_network::{Bound, EventId, Network};
 
 /// No edge. Far from overflow even when two are added.
-const NONE: i64 = i64::MAX / 4;
+pub const NONE: i64 = i64::MAX / 4;
 
 /// True if the network, in which all delays must be zero, is dynamically controllable.
 pub fn dynamically_controllable(network: &Network) -> bool {
+    closed(network).is_some()
+}
+
+/// Everything that follows from a network without delays; `None` if it is not dynamically controllable.
+pub fn closed(network: &Network) -> Option<Closed> {
     let mut graph = Graph::new(network);
     let pairs = graph.size * graph.size;
     for _ in 0..=pairs {
         if graph.has_negative_cycle() {
-            return false;
+            return None;
         }
         if !graph.round() {
-            return true;
+            let Graph { ordinary, upper, .. } = graph;
+            return Some(Closed { ordinary, upper });
         }
     }
-    false
+    None
+}
+
+/// A closed graph, by event numbers. Entries of [`NONE`] are no edges.
+pub struct Closed {
+    /// `ordinary[p][q]` is the weight of `P -> Q`, in microseconds.
+    pub ordinary: Vec<Vec<i64>>,
+    /// `upper[c][p]` is the weight of the upper-case edge from P to the activation of link c.
+    pub upper: Vec<Vec<i64>>,
 }
 
 /// A contingent link, times in microseconds.

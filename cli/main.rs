@@ -7,6 +7,7 @@ mod check;
 mod compile;
 mod conflict;
 mod explain;
+mod generate;
 mod input;
 mod json;
 mod output;
@@ -40,6 +41,7 @@ fn execute(arguments: &Arguments) -> Status {
         Command::Check(check) => check::check(check, &arguments.common),
         Command::Compile(compile) => compile::compile(compile, &arguments.common),
         Command::Verify(verify) => verify::verify(verify, &arguments.common),
+        Command::Generate(generate) => generate::generate(generate, &arguments.common),
         Command::Explain(explain) => explain::explain(explain),
     };
     match result {

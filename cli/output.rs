@@ -31,3 +31,9 @@ pub(crate) fn complain(message: &str) {
     // If standard error is closed there is nobody to tell.
     let _ = writeln!(io::stderr().lock(), "error: {message}");
 }
+
+/// Prints a remark that is not part of what was asked for to standard error.
+pub(crate) fn remark(message: &str) {
+    // If standard error is closed there is nobody to tell.
+    let _ = writeln!(io::stderr().lock(), "{message}");
+}

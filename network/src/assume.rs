@@ -46,6 +46,18 @@ pub fn check_assuming(network: &Network, assumption: Assumption) -> Result<Assum
     Ok(Assumed { verdict, network: network.clone() })
 }
 
+/// The network that stands for `network` under an assumption. The elongated one is merged, and its requirements are
+/// one-sided; the others differ in their delays only.
+///
+/// # Errors
+/// [`TooLarge`] if elongated durations add up to more than 64-bit microseconds can hold.
+pub fn assume(network: &Network, assumption: Assumption) -> Result<Network, TooLarge> {
+    match assumption {
+        Assumption::Elongated => Ok(elongate::elongate(&merge(network).network)?.network),
+        _ => Ok(with_delays(network, assumption)),
+    }
+}
+
 /// What is assumed about the delays of news. [`Delay`] `[g-, g+]`; a `g+` that is infinite stays so, except in `Zero`
 /// and `Minimum`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -10,8 +10,11 @@
 //! set of arrays instead of one per suspended search; every link causes at most one new beginning, so it costs a
 //! factor of two at worst.
 
+mod potential;
+mod record;
+
 use crate::radix::RadixQueue;
-use crate::stnu::{Edge, LIMIT, NONE, Rows, Stnu, TooLarge, add, within_limit};
+use crate::stnu::{Edge, NONE, Rows, Stnu, TooLarge, add, within_limit};
 
 /// One step along an edge of a cycle; the numbers are indices into [`Stnu::edges`] and [`Stnu::links`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -255,81 +258,9 @@ impl<'a> Search<'a> {
         Ok(None)
     }
 
-    /// Potentials over ordinary and lower-case edges, or a negative cycle of them.
-    ///
-    /// Bellman-Ford in rounds over the nodes that changed; now and then the tree of last improvements is searched for a
-    /// cycle, so a negative one is found about as soon as it exists.
-    fn initial_potential(&mut self) -> Result<Option<Vec<Move>>, TooLarge> {
-        let mut changed: Vec<u32> = (0..self.stnu.nodes).rev().collect();
-        let mut queued = vec![false; self.nodes.len()];
-        let mut next = Vec::new();
-        let (mut rounds, mut next_look) = (0, 1);
-        while !changed.is_empty() {
-            for &to in &changed {
-                queued[to as usize] = false;
-                let potential = within_limit(self.node(to).potential)?;
-                let mut relax = |from: u32, edge: EdgeId, weight: i64, node: &mut Node| {
-                    let candidate = weight + potential;
-                    if candidate < node.potential {
-                        node.potential = candidate;
-                        node.via = edge;
-                        if !std::mem::replace(&mut queued[from as usize], true) {
-                            next.push(from);
-                        }
-                    }
-                };
-                if let Some(lower) = self.lower_into(to) {
-                    let Edge { from, weight, .. } = self.edges[lower as usize];
-                    relax(from, lower, weight, &mut self.nodes[from as usize]);
-                }
-                for &Incoming { from, edge, weight } in &self.incoming[incoming_of(&self.incoming_at, to)] {
-                    relax(from, edge, weight, &mut self.nodes[from as usize]);
-                }
-            }
-            rounds += 1;
-            if rounds == next_look {
-                next_look += next_look / 4 + 1;
-                if let Some(cycle) = self.cycle_of_improvements() {
-                    return Ok(Some(cycle));
-                }
-            }
-            changed.clear();
-            std::mem::swap(&mut changed, &mut next);
-        }
-        Ok(None)
-    }
-
-    fn cycle_of_improvements(&self) -> Option<Vec<Move>> {
-        let mut walk_of = vec![NONE; self.nodes.len()];
-        for start in 0..self.stnu.nodes {
-            let mut node = start;
-            while walk_of[node as usize] == NONE && self.node(node).via != NONE {
-                walk_of[node as usize] = start;
-                node = self.edges[self.node(node).via as usize].to;
-            }
-            if walk_of[node as usize] == start && self.node(node).via != NONE {
-                return Some(self.walk(node, node));
-            }
-        }
-        None
-    }
-
     #[inline]
     fn node(&self, node: u32) -> &Node {
         &self.nodes[node as usize]
-    }
-
-    /// The edges from `node` along `via` up to `end` (at least one edge).
-    fn walk(&self, mut node: u32, end: u32) -> Vec<Move> {
-        let mut moves = Vec::new();
-        loop {
-            let edge = self.node(node).via;
-            moves.push(Move::Along(edge));
-            node = self.edges[edge as usize].to;
-            if node == end {
-                return moves;
-            }
-        }
     }
 
     /// The number of the lower-case edge into `node`, if it is contingent.
@@ -514,139 +445,5 @@ impl<'a> Search<'a> {
             }
         }
         self.repair_potential(activation)
-    }
-
-    /// Lowers the potentials until they fit the new edges into `activation`; a negative cycle if that never ends.
-    ///
-    /// Largest change first, every node changes once: S. Cotton, O. Maler, *Fast and flexible difference constraint
-    /// propagation for DPLL(T)*, 2006.
-    fn repair_potential(&mut self, activation: u32) -> Result<Found, TooLarge> {
-        if self.improved.is_empty() {
-            return Ok(Found::Done);
-        }
-        let potential = self.node(activation).potential;
-        // From here on `distance` is the change a node is queued for, and `expanded` says that it is made.
-        self.round += 1;
-        self.queue.restart(-2 * LIMIT);
-        for at in 0..self.improved.len() {
-            let (node, edge) = self.improved[at];
-            let weight = self.edges[edge as usize].weight;
-            self.lower_potential(activation, node, edge, weight + potential);
-        }
-        while let Some((change, node)) = self.queue.pop() {
-            if self.node(node).expanded == self.round {
-                continue;
-            }
-            self.nodes[node as usize].expanded = self.round;
-            let potential = within_limit(self.node(node).potential + change)?;
-            self.nodes[node as usize].potential = potential;
-            let mut closes = None;
-            for at in incoming_of(&self.incoming_at, node) {
-                let Incoming { from, edge, weight } = self.incoming[at];
-                closes = closes.or(self.lower_potential(activation, from, edge, weight + potential));
-            }
-            if let Some(lower) = self.lower_into(node) {
-                let Edge { from, weight, .. } = self.edges[lower as usize];
-                closes = closes.or(self.lower_potential(activation, from, lower, weight + potential));
-            }
-            let mut edge = self.derived_in[node as usize];
-            while edge != NONE {
-                let Edge { from, weight, .. } = self.edges[edge as usize];
-                closes = closes.or(self.lower_potential(activation, from, edge, weight + potential));
-                edge = self.before_in[edge as usize - self.derived_from];
-            }
-            if let Some(edge) = closes {
-                let mut cycle = vec![Move::Along(edge)];
-                cycle.extend(self.walk(node, activation));
-                return Ok(Found::Cycle(cycle));
-            }
-        }
-        Ok(Found::Done)
-    }
-
-    /// Queues a node whose potential may be no more than `most`, for the sake of this edge. The edge, if the node is
-    /// the activation: its own potential need not change.
-    #[inline(always)]
-    fn lower_potential(&mut self, activation: u32, from: u32, edge: EdgeId, most: i64) -> Option<EdgeId> {
-        let node = &mut self.nodes[from as usize];
-        let change = most - node.potential;
-        if change >= 0 {
-            return None;
-        }
-        if from == activation {
-            return Some(edge);
-        }
-        if node.reached != self.round || change < node.distance {
-            node.reached = self.round;
-            node.distance = change;
-            node.via = edge;
-            self.queue.push(change, from);
-        }
-        None
-    }
-
-    /// The way of the last backward search from `node` to the contingent event of `link`.
-    fn way_to_contingent(&self, node: u32, link: u32) -> Vec<Move> {
-        if !self.recording {
-            return Vec::new();
-        }
-        let end = self.stnu.links[link as usize].contingent;
-        if node == end { Vec::new() } else { self.walk(node, end) }
-    }
-
-    /// The search of the last link in progress has come back to the activation of an earlier one.
-    fn close_cycle(&self, progress: &[(u32, Vec<Move>)], again: u32) -> Vec<Move> {
-        let mut cycle = Vec::new();
-        let from = progress.iter().position(|&(link, _)| link == again).unwrap_or_default();
-        for (at, (link, way)) in progress.iter().enumerate().skip(from).rev() {
-            if at + 1 == progress.len() {
-                cycle.extend(self.way_to_contingent(self.stnu.links[again as usize].activation, *link));
-            } else {
-                cycle.extend(way);
-            }
-            cycle.push(Move::Upper(*link));
-        }
-        cycle
-    }
-
-    /// Expands derived edges into what they are made of and counts the steps.
-    fn count(&self, cycle: Vec<Move>) -> Result<Cycle, TooLarge> {
-        let mut edges = vec![0_i64; self.edges.len()];
-        let mut uppers = vec![0_i64; self.stnu.links.len()];
-        let mut tally = |moves: &[Move], times: i64, edges: &mut [i64]| -> Result<(), TooLarge> {
-            for &step in moves {
-                let count = match step {
-                    Move::Along(edge) => &mut edges[edge as usize],
-                    Move::Upper(link) => &mut uppers[link as usize],
-                };
-                *count = add(*count, times)?;
-            }
-            Ok(())
-        };
-        tally(&cycle, 1, &mut edges)?;
-        // A derived edge is made of older ones.
-        for edge in (self.derived_from..self.edges.len()).rev() {
-            let times = edges[edge];
-            if times > 0 {
-                tally(&self.derivations[edge - self.derived_from], times, &mut edges)?;
-            }
-        }
-        let lower_from = self.lower_from;
-        let mut steps = Vec::new();
-        for (edge, &times) in edges[..self.derived_from].iter().enumerate().filter(|&(_, &times)| times > 0) {
-            let step = match edge.checked_sub(lower_from) {
-                None => Step::Edge(edge as u32),
-                Some(link) => Step::Lower(link as u32),
-            };
-            steps.push((step, times));
-        }
-        steps.extend(
-            uppers
-                .iter()
-                .enumerate()
-                .filter(|&(_, &times)| times > 0)
-                .map(|(link, &times)| (Step::Upper(link as u32), times)),
-        );
-        Ok(Cycle { steps })
     }
 }

@@ -1,0 +1,76 @@
+//! The rules of the house that a machine can hold.
+
+#![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The dependencies a manifest names, without those of tests.
+fn dependencies(manifest: &str) -> Vec<String> {
+    let text = fs::read_to_string(manifest).unwrap();
+    let section = text.split("\n[dependencies]\n").nth(1).unwrap();
+    let section = section.split("\n[").next().unwrap();
+    section.lines().filter_map(|line| line.split(['.', ' ', '=']).next()).map(str::to_string).collect()
+}
+
+#[test]
+fn the_crates_know_only_whom_they_may_know() {
+    let ours = |manifest: &str| -> Vec<String> {
+        dependencies(manifest).into_iter().filter(|name| name.starts_with("kirk-")).collect()
+    };
+    assert_eq!(ours("network/Cargo.toml"), Vec::<String>::new());
+    assert_eq!(ours("compiler/Cargo.toml"), ["kirk-network"]);
+    assert_eq!(ours("runtime/Cargo.toml"), ["kirk-network"]);
+}
+
+#[test]
+fn what_belongs_in_one_place_is_named_in_one_place() {
+    for (name, owner) in [
+        ("pest", "compiler"),
+        ("lexpr", "compiler"),
+        ("petgraph", "network"),
+        ("clap", "."),
+        ("codespan-reporting", "."),
+    ] {
+        for folder in [".", "compiler", "network", "runtime"] {
+            let named =
+                dependencies(&format!("{folder}/Cargo.toml")).iter().any(|dependency| dependency == name);
+            assert_eq!(named, folder == owner, "{name} in {folder}");
+        }
+    }
+}
+
+#[test]
+fn every_source_file_says_what_it_is_and_has_nothing_unfinished() {
+    let mut files = Vec::new();
+    for folder in ["cli", "compiler", "network", "runtime", "tests"] {
+        rust_files(Path::new(folder), &mut files);
+    }
+    assert!(files.len() > 80, "only {} files", files.len());
+    for file in files {
+        let text = fs::read_to_string(&file).unwrap();
+        let name = file.display();
+        assert!(text.starts_with("//!"), "{name} does not open with what it is");
+        for unfinished in [
+            concat!("todo", "!("),
+            concat!("unimple", "mented!("),
+            concat!("#[ig", "nore"),
+            concat!("FIX", "ME"),
+        ] {
+            assert!(!text.contains(unfinished), "{name} contains {unfinished}");
+        }
+        let is_code = file.components().any(|part| part.as_os_str() == "src" || part.as_os_str() == "cli");
+        assert!(!is_code || text.lines().count() <= 600, "{name} may want to be two ideas");
+    }
+}
+
+fn rust_files(folder: &Path, files: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            rust_files(&path, files);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            files.push(path);
+        }
+    }
+}

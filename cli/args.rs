@@ -49,6 +49,8 @@ pub(crate) enum Command {
     Verify(Verify),
     /// Prints a random network of a family, for experiments and benchmarks.
     Generate(Generate),
+    /// Lays out RMPL files: indentation, line breaks and blanks.
+    Fmt(Fmt),
     /// Explains a diagnostic code, such as K0203.
     Explain(Explain),
 }
@@ -299,6 +301,16 @@ pub(crate) enum LinkKind {
     Requirement,
     /// Nature does.
     Contingent,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Fmt {
+    /// Files to lay out in place; `-` reads standard input and writes standard output.
+    #[arg(value_name = "FILE", required = true)]
+    pub(crate) files: Vec<String>,
+    /// Change nothing; print the names of the files that would change, and exit with 1 if there are any.
+    #[arg(long)]
+    pub(crate) check: bool,
 }
 
 #[derive(Debug, Args)]

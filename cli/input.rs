@@ -67,7 +67,7 @@ pub(crate) fn load_all(files: &[String], selection: &Selection) -> Input {
             diagnostics.push(diagnostic);
             String::new()
         });
-        if !text.is_empty() && matches!(kind(file, &text), Kind::Network(_)) {
+        if !text.is_empty() && is_network(file, &text) {
             let message = format!("`{}` is a network and cannot be part of a program", shown(file));
             diagnostics.push(
                 problem(message).help("Several files are compiled as one program. Give a network alone."),
@@ -100,12 +100,17 @@ pub(crate) fn text(file: &str) -> Result<String, Diagnostic> {
             "kirk reads RMPL and networks as text; is this the right file, or a compiled or compressed one?",
         )
     })?;
-    if text.len() as u64 > LARGEST_PROGRAM && matches!(kind(file, &text), Kind::Rmpl) {
+    if text.len() as u64 > LARGEST_PROGRAM && !is_network(file, &text) {
         let message =
             format!("this file has {} bytes; kirk reads programs of up to {LARGEST_PROGRAM}", text.len());
         return Err(Diagnostic::error(Code::TooLong, start, message));
     }
     Ok(text)
+}
+
+/// True if a file of this name and text is a network.
+pub(crate) fn is_network(file: &str, text: &str) -> bool {
+    matches!(kind(file, text), Kind::Network(_))
 }
 
 /// The extension decides; without a known one, the first character.

@@ -7,6 +7,7 @@ mod check;
 mod compile;
 mod conflict;
 mod explain;
+mod fmt;
 mod generate;
 mod input;
 mod json;
@@ -42,6 +43,7 @@ fn execute(arguments: &Arguments) -> Status {
         Command::Compile(compile) => compile::compile(compile, &arguments.common),
         Command::Verify(verify) => verify::verify(verify, &arguments.common),
         Command::Generate(generate) => generate::generate(generate, &arguments.common),
+        Command::Fmt(fmt) => fmt::fmt(fmt, &arguments.common),
         Command::Explain(explain) => explain::explain(explain),
     };
     match result {

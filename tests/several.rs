@@ -1,4 +1,5 @@
 //! Several files on one command line are one program, and messages point into the right one.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod binary;
 

@@ -5,7 +5,7 @@
 //! form is open means that the earlier form was never closed.
 
 pub(crate) mod foreign;
-mod token;
+pub(crate) mod token;
 
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;

@@ -9,7 +9,7 @@ struct Grammar;
 
 /// What a token is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(crate) enum Kind {
     End,
     Open,
     Close,
@@ -26,26 +26,26 @@ pub(super) enum Kind {
 
 /// A token and where it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Token {
-    pub(super) kind: Kind,
-    pub(super) start: usize,
-    pub(super) end: usize,
+pub(crate) struct Token {
+    pub(crate) kind: Kind,
+    pub(crate) start: usize,
+    pub(crate) end: usize,
 }
 
 /// Reads a text token by token.
-pub(super) struct Tokens<'a> {
+pub(crate) struct Tokens<'a> {
     text: &'a str,
     at: usize,
     peeked: Option<Token>,
 }
 
 impl<'a> Tokens<'a> {
-    pub(super) fn new(text: &'a str) -> Tokens<'a> {
+    pub(crate) fn new(text: &'a str) -> Tokens<'a> {
         Tokens { text, at: 0, peeked: None }
     }
 
     /// The next token; the last one is `End`, again and again.
-    pub(super) fn take(&mut self) -> Token {
+    pub(crate) fn take(&mut self) -> Token {
         let token = self.peek();
         self.peeked = None;
         self.at = token.end;
@@ -53,21 +53,21 @@ impl<'a> Tokens<'a> {
     }
 
     /// The token `take` will return.
-    pub(super) fn peek(&mut self) -> Token {
+    pub(crate) fn peek(&mut self) -> Token {
         let token = self.peeked.unwrap_or_else(|| self.scan(self.at));
         self.peeked = Some(token);
         token
     }
 
     /// Goes on reading at a byte offset.
-    pub(super) fn seek(&mut self, at: usize) {
+    pub(crate) fn seek(&mut self, at: usize) {
         let boundary = (at..self.text.len()).find(|at| self.text.is_char_boundary(*at));
         self.at = boundary.unwrap_or(self.text.len());
         self.peeked = None;
     }
 
     /// Where the next token is looked for.
-    pub(super) fn position(&self) -> usize {
+    pub(crate) fn position(&self) -> usize {
         self.at
     }
 

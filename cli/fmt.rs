@@ -1,0 +1,55 @@
+//! `kirk fmt`: lays out RMPL files as everybody does.
+
+use std::io;
+
+use kirk_compiler::{Code, Diagnostic, Source, Span, format};
+
+use crate::args::{Common, Fmt};
+use crate::input::{is_network, text};
+use crate::output::{Status, print, print_line};
+use crate::report::Reporter;
+
+pub(crate) fn fmt(arguments: &Fmt, common: &Common) -> io::Result<Status> {
+    let mut worst = Status::Yes;
+    for file in &arguments.files {
+        worst = worst.max(fmt_one(file, arguments.check, common)?);
+    }
+    Ok(worst)
+}
+
+/// A file that cannot be read is left as it is.
+fn fmt_one(file: &str, check: bool, common: &Common) -> io::Result<Status> {
+    let name = if file == "-" { "<stdin>" } else { file };
+    let refuse = |text: &str, diagnostics: &[Diagnostic]| {
+        Reporter::new(&[Source::new(name, text)]).show(diagnostics, common)?;
+        Ok(Status::Wrong)
+    };
+    let before = match text(file) {
+        Ok(text) => text,
+        Err(diagnostic) => return refuse("", &[diagnostic]),
+    };
+    if is_network(file, &before) {
+        let message = format!("`{name}` is a network, and no program to lay out");
+        return refuse("", &[Diagnostic::error(Code::CannotRead, Span::default(), message)]);
+    }
+    let after = match format(&before) {
+        Ok(after) => after,
+        Err(diagnostics) => return refuse(&before, &diagnostics),
+    };
+    match (check, file) {
+        (true, _) if after == before => {}
+        (true, _) => {
+            print_line(name)?;
+            return Ok(Status::No);
+        }
+        (false, "-") => print(&after)?,
+        (false, _) if after == before => {}
+        (false, _) => {
+            if let Err(error) = std::fs::write(file, &after) {
+                let message = format!("cannot write `{file}`: {error}");
+                return refuse("", &[Diagnostic::error(Code::CannotRead, Span::default(), message)]);
+            }
+        }
+    }
+    Ok(Status::Yes)
+}

@@ -14,10 +14,11 @@ use std::collections::VecDeque;
 
 use kirk_network::reduce::{Progress, Reduction};
 use kirk_network::stnu::{Link, Rows};
-use kirk_network::{Bound, EventId, Network, Time};
+use kirk_network::{Duration, EventId, Network, Time};
 
 use crate::agenda::Agenda;
 use crate::execution::How;
+use crate::knowledge::{Knowledge, Known, heard_now};
 use crate::plan::Plan;
 
 /// What to do with news that says more than the plan assumed.
@@ -68,21 +69,6 @@ pub struct Missed {
     pub latest: Time,
 }
 
-/// What is known of one event.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Knowledge {
-    /// When and how the executive fixed it.
-    pub fixed: Option<(Time, How)>,
-    /// Its place among the events fixed so far.
-    pub sequence: u32,
-    /// When its news arrived.
-    pub observed: Option<Time>,
-    /// An interval in which it happened, from its own news or from the lack of it.
-    evidence: Option<(i64, i64)>,
-    /// It is known to have happened: heard, imagined, or implied by news of what follows it.
-    settled: bool,
-}
-
 /// The state of an execution.
 #[derive(Clone, Debug)]
 pub struct Dispatcher {
@@ -92,15 +78,11 @@ pub struct Dispatcher {
     agenda: Agenda,
     /// The links that have started and whose contingent node has not happened: (window start, window end, link).
     active: Vec<(i64, i64, u32)>,
-    /// For every event of the network.
-    knowledge: Vec<Knowledge>,
-    /// For every event the contingent links that start there.
-    children: Rows,
+    knowledge: Knowledge,
     /// Events without a node of their own that may not have happened yet: (when they surely have, event).
     unplaced: Vec<(i64, EventId)>,
     /// For every node of the plan the events placed there.
     placed_at: Rows,
-    sequence: u32,
     now: i64,
     dispatches: VecDeque<Dispatch>,
     missed: Option<Missed>,
@@ -114,14 +96,9 @@ impl Dispatcher {
             reduction: plan.reduction.clone(),
             agenda: Agenda::new(&plan.net),
             active: Vec::new(),
-            knowledge: vec![Knowledge::default(); plan.network().events().len()],
-            children: Rows::new(
-                plan.network().events().len() as u32,
-                plan.network().contingents().iter().map(|link| link.from.0),
-            ),
+            knowledge: Knowledge::new(plan.network()),
             unplaced: Vec::new(),
             placed_at: Rows::new(0, std::iter::empty()),
-            sequence: 0,
             now: 0,
             dispatches: VecDeque::new(),
             missed: None,
@@ -138,8 +115,8 @@ impl Dispatcher {
     }
 
     /// What is known of an event.
-    pub fn knowledge(&self, event: EventId) -> &Knowledge {
-        &self.knowledge[event.index()]
+    pub fn known(&self, event: EventId) -> &Known {
+        self.knowledge.of(event)
     }
 
     /// The event that could not be executed in its window, if that has happened. Then nothing more is dispatched.
@@ -152,29 +129,24 @@ impl Dispatcher {
         self.now = self.now.max(now.as_micros());
         let now = self.now;
         let Some(link) = self.network().link_of(event) else { return Reception::NotContingent };
-        if self.knowledge[event.index()].observed.is_some() {
+        if self.known(event).observed.is_some() {
             return Reception::Repeated;
         }
-        let delay = self.network().contingents()[link].delay;
-        let latest = now - delay.min.as_micros();
-        let earliest = match delay.max {
-            Bound::Finite(max) => now - max.as_micros(),
-            Bound::Infinite => i64::MIN,
-        };
+        let link = self.network().contingents()[link];
+        let evidence = heard_now(&link, now);
         let before = self.happened(event);
-        let consistent = before.is_some_and(|(low, high)| low.max(earliest) <= high.min(latest))
-            && self.is_activated(event);
-        if !consistent {
-            let longest = delay.max.finite().map(|max| max.as_micros());
+        let possible =
+            before.is_some_and(|(low, high)| low.max(evidence.0) <= high.min(evidence.1) && low <= now);
+        if !possible {
+            let after =
+                |time: i64, delay: Duration| Time::from_micros(time.saturating_add(delay.as_micros()));
             return Reception::Impossible {
-                earliest: before.map(|(low, _)| Time::from_micros(low.saturating_add(delay.min.as_micros()))),
-                latest: before
-                    .zip(longest)
-                    .map(|((_, high), max)| Time::from_micros(high.saturating_add(max))),
+                earliest: before.map(|(low, _)| after(low, link.delay.min)),
+                latest: before.zip(link.delay.max.finite()).map(|((_, high), max)| after(high, max)),
             };
         }
-        self.knowledge[event.index()].observed = Some(Time::from_micros(now));
-        self.add_evidence(event, earliest, latest);
+        self.knowledge.hear(event, now);
+        self.knowledge.add_evidence(event, evidence);
         let place = self.reduction.places[event.index()];
         let window = self.active.iter().copied().find(|&(_, _, link)| {
             self.reduction.stnu.links[link as usize].contingent == place.node && place.heard_by == Some(event)
@@ -187,8 +159,8 @@ impl Dispatcher {
                 if self.strategy == Strategy::Optimistic && self.says_more(event, before) {
                     self.replan(event);
                 }
-                if self.knowledge[event.index()].fixed.is_none() && place.heard_by != Some(event) {
-                    self.fix(event, now, How::Observed);
+                if place.heard_by != Some(event) {
+                    self.knowledge.fix(event, now, How::Observed);
                 }
             }
         }
@@ -230,67 +202,23 @@ impl Dispatcher {
         link.into_iter().chain(event).chain(over).min().map(|time| Time::from_micros(time.max(self.now)))
     }
 
-    /// The interval in which an event happened or will happen, given all that is known; `None` while its activation
-    /// has not been executed.
+    /// The interval (microseconds) in which an event happened or will happen, given all that is known; `None` while its
+    /// activation has not been executed.
     pub fn happened(&self, event: EventId) -> Option<(i64, i64)> {
+        self.knowledge.happened(self.network(), event)
+    }
+
+    /// The same for all events at the end of an execution, when silence also says something: an event that was never
+    /// heard of cannot have happened so long ago that its news would have come by `end`.
+    pub fn happened_by(&self, end: Time) -> Vec<Option<(i64, i64)>> {
         let network = self.network();
-        let mut path = vec![event];
-        let mut at = event;
-        while let Some(link) = network.link_of(at) {
-            at = network.contingents()[link].from;
-            path.push(at);
-        }
-        let root = self.knowledge[at.index()].fixed.map(|(time, _)| time.as_micros())?;
-        let mut interval = (root, root);
-        for pair in path.windows(2).rev() {
-            let (child, parent) = (pair[0], pair[1]);
-            if parent != at {
-                interval = self.narrowed(parent, interval);
+        let mut all = self.knowledge.all_happened(network);
+        for link in network.contingents().iter().filter(|link| self.known(link.to).observed.is_none()) {
+            if let (Some((low, high)), Some(max)) = (&mut all[link.to.index()], link.delay.max.finite()) {
+                *low = (*low).max(end.as_micros().saturating_sub(max.as_micros())).min(*high);
             }
-            let link = network.link_of(child).map(|link| network.contingents()[link])?;
-            interval = (interval.0 + link.lower.as_micros(), interval.1 + link.upper.as_micros());
         }
-        Some(if event == at { interval } else { self.narrowed(event, interval) })
-    }
-
-    /// The same at the end of an execution, when silence also says something: an event that was never heard of cannot
-    /// have happened so long ago that its news would have come by `end`.
-    pub fn happened_by(&self, event: EventId, end: Time) -> Option<(i64, i64)> {
-        let (low, high) = self.happened(event)?;
-        let link = self.network().link_of(event).map(|link| self.network().contingents()[link]);
-        let silent = self.knowledge[event.index()].observed.is_none();
-        let not_before = match link.and_then(|link| link.delay.max.finite()) {
-            Some(max) if silent => end.as_micros().saturating_sub(max.as_micros()),
-            _ => i64::MIN,
-        };
-        Some((low.max(not_before).min(high), high))
-    }
-
-    /// `interval` as far as the evidence of `event` and of all that follows it in its tree of links allows.
-    fn narrowed(&self, event: EventId, interval: (i64, i64)) -> (i64, i64) {
-        let (low, high) = self.evidence_below(event);
-        (interval.0.max(low), interval.1.min(high))
-    }
-
-    fn evidence_below(&self, event: EventId) -> (i64, i64) {
-        let mut evidence = self.knowledge[event.index()].evidence.unwrap_or((i64::MIN, i64::MAX));
-        for &link in self.children.of(event.0) {
-            let link = self.network().contingents()[link as usize];
-            let (low, high) = self.evidence_below(link.to);
-            evidence.0 = evidence.0.max(low.saturating_sub(link.upper.as_micros()));
-            evidence.1 = evidence.1.min(high.saturating_sub(link.lower.as_micros()));
-        }
-        evidence
-    }
-
-    fn add_evidence(&mut self, event: EventId, low: i64, high: i64) {
-        let known = self.knowledge[event.index()].evidence.unwrap_or((i64::MIN, i64::MAX));
-        self.knowledge[event.index()].evidence = Some((known.0.max(low), known.1.min(high)));
-        self.knowledge[event.index()].settled = true;
-    }
-
-    fn is_activated(&self, event: EventId) -> bool {
-        self.happened(event).is_some_and(|(low, _)| low <= self.now)
+        all
     }
 
     /// True if the news of an event narrowed what was assumed of it or of its ancestors.
@@ -307,22 +235,14 @@ impl Dispatcher {
     /// Puts what is known in place of the links and plans what is left anew.
     fn replan(&mut self, news: EventId) {
         let network = self.plan.network();
-        // What has news of what follows it has happened, heard or not.
-        let mut settled: Vec<bool> = self.knowledge.iter().map(|known| known.settled).collect();
-        for event in network.event_ids().filter(|event| settled[event.index()]).collect::<Vec<_>>() {
-            let mut at = event;
-            while let Some(link) = network.link_of(at) {
-                settled[at.index()] = true;
-                at = network.contingents()[link].from;
-            }
-        }
+        self.knowledge.settle_ancestors(network);
+        let happened = self.knowledge.all_happened(network);
         let known = network
             .event_ids()
-            .map(|event| match (network.link_of(event), self.knowledge[event.index()].fixed) {
-                (None, fixed) => fixed.map(|(time, _)| (time, time)),
-                (Some(_), _) if settled[event.index()] => {
-                    self.happened(event).map(|(low, high)| (Time::from_micros(low), Time::from_micros(high)))
-                }
+            .map(|event| match (network.link_of(event), self.knowledge.of(event)) {
+                (None, known) => known.fixed.map(|(time, _)| (time, time)),
+                (Some(_), known) if known.settled => happened[event.index()]
+                    .map(|(low, high)| (Time::from_micros(low), Time::from_micros(high))),
                 _ => None,
             })
             .collect();
@@ -334,14 +254,10 @@ impl Dispatcher {
         self.active.clear();
         self.activate_from_origin();
         for event in self.plan.network().event_ids() {
-            if settled[event.index()] && self.knowledge[event.index()].fixed.is_none() {
-                let how = if event == news || self.knowledge[event.index()].observed.is_some() {
-                    How::Observed
-                } else {
-                    How::Imagined
-                };
-                self.knowledge[event.index()].settled = true;
-                self.fix(event, self.now, how);
+            let known = *self.known(event);
+            if known.settled && known.fixed.is_none() {
+                let heard = event == news || known.observed.is_some();
+                self.knowledge.fix(event, self.now, if heard { How::Observed } else { How::Imagined });
             }
         }
     }
@@ -366,7 +282,7 @@ impl Dispatcher {
             let root = self.reduction.event_of[node as usize];
             let heard = self.reduction.places[root.index()]
                 .heard_by
-                .is_some_and(|event| self.knowledge[event.index()].observed.is_some());
+                .is_some_and(|event| self.known(event).observed.is_some());
             if heard { (start.max(self.now), node, How::Buffered) } else { (end, node, How::Imagined) }
         });
         ends.min_by_key(|&(time, node, _)| (time, node))
@@ -377,13 +293,15 @@ impl Dispatcher {
         let root = self.reduction.event_of[node as usize];
         let event = self.reduction.places[root.index()].heard_by.unwrap_or(root);
         self.active.retain(|&(_, _, link)| self.reduction.stnu.links[link as usize].contingent != node);
+        let place = self.reduction.places[event.index()];
         if how == How::Imagined {
-            let place = self.reduction.places[event.index()];
             // Had it happened earlier, its news would have come.
-            self.add_evidence(event, time.saturating_add(place.earliest), time.saturating_add(place.latest));
+            self.knowledge.add_evidence(
+                event,
+                (time.saturating_add(place.earliest), time.saturating_add(place.latest)),
+            );
         }
-        self.knowledge[event.index()].settled = true;
-        self.fix(event, time, how);
+        self.knowledge.fix(event, time, how);
         self.start(node, time);
     }
 
@@ -418,22 +336,13 @@ impl Dispatcher {
     }
 
     fn dispatched(&mut self, event: EventId, time: i64) {
-        self.fix(event, time, How::Dispatched);
+        self.knowledge.fix(event, time, How::Dispatched);
         self.dispatches.push_back(Dispatch { event, time: Time::from_micros(time) });
-    }
-
-    fn fix(&mut self, event: EventId, time: i64, how: How) {
-        let knowledge = &mut self.knowledge[event.index()];
-        if knowledge.fixed.is_none() {
-            knowledge.fixed = Some((Time::from_micros(time), how));
-            knowledge.sequence = self.sequence;
-            self.sequence += 1;
-        }
     }
 
     /// When the last contingent event that nothing waits for has surely happened.
     fn last_unheard(&self) -> Option<i64> {
-        let unheard = |event: &EventId| self.knowledge[event.index()].observed.is_none();
+        let unheard = |event: &EventId| self.known(*event).observed.is_none();
         self.unplaced.iter().filter(|(_, event)| unheard(event)).map(|&(over, _)| over).max()
     }
 }

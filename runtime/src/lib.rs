@@ -45,6 +45,7 @@
 mod agenda;
 pub mod dispatcher;
 pub mod execution;
+pub mod knowledge;
 pub mod nature;
 pub mod plan;
 pub mod simulate;

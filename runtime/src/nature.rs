@@ -47,6 +47,9 @@ pub struct Nature<'a> {
     /// For each event, when its news must arrive.
     observations: Vec<Option<Time>>,
     children: Vec<Vec<EventId>>,
+    /// Where the observations require each event to be, and where Nature has put it.
+    required: Vec<(i64, i64)>,
+    truth: Vec<i64>,
 }
 
 impl<'a> Nature<'a> {
@@ -66,37 +69,63 @@ impl<'a> Nature<'a> {
             children[link.from.index()].push(link.to);
         }
         let random = fastrand::Rng::with_seed(seed);
-        Nature { network, temper, random, observations: by_event, children }
+        let count = network.events().len();
+        Nature {
+            network,
+            temper,
+            random,
+            observations: by_event,
+            children,
+            required: vec![(i64::MIN, i64::MAX); count],
+            truth: vec![0; count],
+        }
     }
 
     /// All that follows from executing `root` at `time`, every event after its activation.
     ///
     /// # Errors
-    /// The first observation that cannot come about.
+    /// An observation that cannot come about.
     pub fn begin(&mut self, root: EventId, time: Time) -> Result<Vec<Deed>, Impossible> {
-        let mut deeds: Vec<Deed> = Vec::new();
-        let mut open = vec![(root, time)];
-        while let Some((parent, start)) = open.pop() {
-            for at in 0..self.children[parent.index()].len() {
-                let event = self.children[parent.index()][at];
-                let deed = self.act(event, start, root, time)?;
-                open.push((event, deed.truth));
-                deeds.push(deed);
-            }
+        let mut tree: Vec<EventId> = self.children[root.index()].clone();
+        let mut at = 0;
+        while at < tree.len() {
+            tree.extend(&self.children[tree[at].index()]);
+            at += 1;
         }
-        Ok(deeds)
+        self.require(&tree, root);
+        self.truth[root.index()] = time.as_micros();
+        tree.into_iter().map(|event| self.act(event, root, time)).collect()
     }
 
-    fn act(
-        &mut self,
-        event: EventId,
-        start: Time,
-        root: EventId,
-        root_time: Time,
-    ) -> Result<Deed, Impossible> {
+    /// Where the observations of each event and of all that follows it require it to be. Children come after parents.
+    fn require(&mut self, tree: &[EventId], root: EventId) {
+        for &event in tree {
+            let delay = self.link(event).delay;
+            self.required[event.index()] = match self.observations[event.index()] {
+                None => (i64::MIN, i64::MAX),
+                Some(time) => {
+                    let latest =
+                        delay.max.finite().map_or(i64::MIN, |max| time.as_micros() - max.as_micros());
+                    (latest, time.as_micros() - delay.min.as_micros())
+                }
+            };
+        }
+        for &event in tree.iter().rev() {
+            let link = self.link(event);
+            if link.from != root {
+                let (low, high) = self.required[event.index()];
+                let parent = &mut self.required[link.from.index()];
+                parent.0 = parent.0.max(low.saturating_sub(link.upper.as_micros()));
+                parent.1 = parent.1.min(high.saturating_sub(link.lower.as_micros()));
+            }
+        }
+    }
+
+    fn act(&mut self, event: EventId, root: EventId, root_time: Time) -> Result<Deed, Impossible> {
         let link = self.link(event);
-        let (start, lower, upper) = (start.as_micros(), link.lower.as_micros(), link.upper.as_micros());
-        let (low, high) = self.required(event);
+        let start = self.truth[link.from.index()];
+        let (lower, upper) = (link.lower.as_micros(), link.upper.as_micros());
+        let (low, high) = self.required[event.index()];
         let (low, high) = (low.max(start.saturating_add(lower)), high.min(start.saturating_add(upper)));
         if low > high {
             return Err(self.first_impossible(event, root, root_time));
@@ -106,6 +135,7 @@ impl<'a> Nature<'a> {
             Temper::Lower => low,
             Temper::Random => self.random.i64(low..=high),
         };
+        self.truth[event.index()] = truth;
         let min = link.delay.min.as_micros();
         let news = match (self.observations[event.index()], link.delay.max) {
             (Some(given), _) => Some(given.as_micros()),
@@ -124,24 +154,6 @@ impl<'a> Nature<'a> {
             },
         };
         Ok(Deed { event, truth: Time::from_micros(truth), news: news.map(Time::from_micros) })
-    }
-
-    /// Where the observations of an event and of all that follow it in its tree require it to be.
-    fn required(&self, event: EventId) -> (i64, i64) {
-        let delay = self.link(event).delay;
-        let (mut low, mut high) = match self.observations[event.index()] {
-            None => (i64::MIN, i64::MAX),
-            Some(time) => {
-                let earliest = delay.max.finite().map_or(i64::MIN, |max| time.as_micros() - max.as_micros());
-                (earliest, time.as_micros() - delay.min.as_micros())
-            }
-        };
-        for &child in &self.children[event.index()] {
-            let (link, (child_low, child_high)) = (self.link(child), self.required(child));
-            low = low.max(child_low.saturating_sub(link.upper.as_micros()));
-            high = high.min(child_high.saturating_sub(link.lower.as_micros()));
-        }
-        (low, high)
     }
 
     fn first_impossible(&self, event: EventId, root: EventId, root_time: Time) -> Impossible {

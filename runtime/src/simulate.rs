@@ -6,7 +6,7 @@ use std::collections::BinaryHeap;
 use kirk_network::json::Seconds;
 use kirk_network::{Duration, EventId, Network, Time};
 
-use crate::dispatcher::{Dispatcher, Missed, Strategy};
+use crate::dispatcher::{Dispatcher, Missed, Reception, Strategy};
 use crate::execution::{Execution, FORMAT, Failure, How, Outcome, Row, at};
 use crate::nature::{Impossible, Nature, Temper};
 use crate::plan::Plan;
@@ -42,7 +42,8 @@ pub fn simulate(plan: &Plan, program: &str, simulation: &Simulation) -> Result<E
         loop {
             while let Some(&Reverse((time, event))) = news.peek().filter(|Reverse((time, _))| *time <= now) {
                 news.pop();
-                dispatcher.handle_observation(time, event);
+                let reception = dispatcher.handle_observation(time, event);
+                debug_assert_eq!(reception, Reception::Accepted, "Nature keeps to the model");
             }
             dispatcher.handle_timeout(now);
             while let Some(dispatch) = dispatcher.poll_dispatch() {
@@ -77,10 +78,11 @@ fn record(
 ) -> Execution {
     let network = dispatcher.network();
     let mut rows: Vec<((i64, u32), Row)> = Vec::new();
+    let all_happened = dispatcher.happened_by(end);
     for event in network.event_ids() {
-        let known = dispatcher.knowledge(event);
+        let known = dispatcher.known(event);
         let contingent = network.link_of(event).is_some();
-        let happened = dispatcher.happened_by(event, end);
+        let happened = all_happened[event.index()];
         let (time, how, order) = match known.fixed {
             Some((time, how)) => (Some(at(time)), how, (time.as_micros(), known.sequence)),
             None if contingent => (None, How::Never, (happened.map_or(i64::MAX, |(_, high)| high), u32::MAX)),

@@ -1,0 +1,178 @@
+//! What is known of each event: when it was fixed and heard, and the interval in which it must have happened.
+//!
+//! Contingent links form trees whose roots are executable. Once the root is executed, news of one event narrows where
+//! the others of its tree can be; one pass up and one pass down the tree find the exact intervals.
+
+use kirk_network::{Bound, ContingentLink, EventId, Network, Time};
+
+use crate::execution::How;
+
+/// What is known of one event.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Known {
+    /// When and how the executive fixed it.
+    pub fixed: Option<(Time, How)>,
+    /// Its place among the events fixed so far.
+    pub sequence: u32,
+    /// When its news arrived.
+    pub observed: Option<Time>,
+    /// It is known to have happened: heard, imagined, or implied by news of what follows it.
+    pub(crate) settled: bool,
+    /// An interval in which it happened, from its own news or from the lack of it.
+    evidence: Option<Interval>,
+}
+
+/// From the earliest to the latest, in microseconds after the origin.
+pub(crate) type Interval = (i64, i64);
+
+const ANYTIME: Interval = (i64::MIN, i64::MAX);
+
+/// All that is known.
+#[derive(Clone, Debug)]
+pub(crate) struct Knowledge {
+    events: Vec<Known>,
+    fixed: u32,
+    /// For each event its root, and for each root the contingent events of its tree, every one after its parent.
+    root: Vec<EventId>,
+    trees: Vec<Vec<EventId>>,
+    /// The number of an event in its tree.
+    number: Vec<u32>,
+}
+
+impl Knowledge {
+    /// Nothing is known yet.
+    pub(crate) fn new(network: &Network) -> Knowledge {
+        let count = network.events().len();
+        let mut children: Vec<Vec<EventId>> = vec![Vec::new(); count];
+        for link in network.contingents() {
+            children[link.from.index()].push(link.to);
+        }
+        let mut root: Vec<EventId> = network.event_ids().collect();
+        let mut trees = vec![Vec::new(); count];
+        let mut number = vec![0; count];
+        for event in network.event_ids().filter(|&event| network.link_of(event).is_none()) {
+            let tree: &mut Vec<EventId> = &mut trees[event.index()];
+            tree.extend(&children[event.index()]);
+            let mut at = 0;
+            while at < tree.len() {
+                let member = tree[at];
+                root[member.index()] = event;
+                number[member.index()] = at as u32;
+                tree.extend(&children[member.index()]);
+                at += 1;
+            }
+        }
+        Knowledge { events: vec![Known::default(); count], fixed: 0, root, trees, number }
+    }
+
+    pub(crate) fn of(&self, event: EventId) -> &Known {
+        &self.events[event.index()]
+    }
+
+    /// Fixes an event, unless it is fixed already.
+    pub(crate) fn fix(&mut self, event: EventId, time: i64, how: How) {
+        let known = &mut self.events[event.index()];
+        if known.fixed.is_none() {
+            known.fixed = Some((Time::from_micros(time), how));
+            known.sequence = self.fixed;
+            self.fixed += 1;
+        }
+    }
+
+    pub(crate) fn hear(&mut self, event: EventId, now: i64) {
+        self.events[event.index()].observed = Some(Time::from_micros(now));
+    }
+
+    /// The event happened in this interval, as far as its own news or silence tells.
+    pub(crate) fn add_evidence(&mut self, event: EventId, (low, high): Interval) {
+        let known = &mut self.events[event.index()];
+        let before = known.evidence.unwrap_or(ANYTIME);
+        known.evidence = Some((before.0.max(low), before.1.min(high)));
+        known.settled = true;
+    }
+
+    /// What follows an event that happened has to be preceded by it: its ancestors happened too.
+    pub(crate) fn settle_ancestors(&mut self, network: &Network) {
+        for at in 0..self.events.len() as u32 {
+            let mut event = EventId(at);
+            while self.events[event.index()].settled
+                && let Some(link) = network.link_of(event)
+            {
+                event = network.contingents()[link].from;
+                if network.link_of(event).is_none() || self.events[event.index()].settled {
+                    break;
+                }
+                self.events[event.index()].settled = true;
+            }
+        }
+    }
+
+    /// The interval in which an event happened or will happen; `None` while its tree has not begun.
+    pub(crate) fn happened(&self, network: &Network, event: EventId) -> Option<Interval> {
+        let root = self.root[event.index()];
+        let start = self.of(root).fixed?.0.as_micros();
+        if event == root {
+            return Some((start, start));
+        }
+        Some(self.intervals(network, root, start)[self.number[event.index()] as usize])
+    }
+
+    /// The same for all events.
+    pub(crate) fn all_happened(&self, network: &Network) -> Vec<Option<Interval>> {
+        let mut all = vec![None; self.events.len()];
+        for root in network.event_ids().filter(|&event| self.root[event.index()] == event) {
+            let Some((start, _)) = self.of(root).fixed else { continue };
+            let start = start.as_micros();
+            all[root.index()] = Some((start, start));
+            for (event, interval) in self.trees[root.index()].iter().zip(self.intervals(network, root, start))
+            {
+                all[event.index()] = Some(interval);
+            }
+        }
+        all
+    }
+
+    /// The intervals of the contingent events of a tree that began at `start`.
+    fn intervals(&self, network: &Network, root: EventId, start: i64) -> Vec<Interval> {
+        let tree = &self.trees[root.index()];
+        let link = |event: EventId| link_to(network, event);
+        // Up: what the evidence of an event and of all that follows it allows.
+        let mut allowed: Vec<Interval> =
+            tree.iter().map(|event| self.of(*event).evidence.unwrap_or(ANYTIME)).collect();
+        for at in (0..tree.len()).rev() {
+            let ContingentLink { from, lower, upper, .. } = *link(tree[at]);
+            if from != root {
+                let (low, high) = allowed[at];
+                let parent = &mut allowed[self.number[from.index()] as usize];
+                parent.0 = parent.0.max(low.saturating_sub(upper.as_micros()));
+                parent.1 = parent.1.min(high.saturating_sub(lower.as_micros()));
+            }
+        }
+        // Down: what the parent and the link allow of that.
+        for at in 0..tree.len() {
+            let ContingentLink { from, lower, upper, .. } = *link(tree[at]);
+            let (low, high) =
+                if from == root { (start, start) } else { allowed[self.number[from.index()] as usize] };
+            let here = &mut allowed[at];
+            here.0 = here.0.max(low.saturating_add(lower.as_micros()));
+            here.1 = here.1.min(high.saturating_add(upper.as_micros()));
+        }
+        allowed
+    }
+}
+
+/// The interval in which an event happened if its news arrives now.
+pub(crate) fn heard_now(link: &ContingentLink, now: i64) -> Interval {
+    let earliest = match link.delay.max {
+        Bound::Finite(max) => now.saturating_sub(max.as_micros()),
+        Bound::Infinite => i64::MIN,
+    };
+    (earliest, now.saturating_sub(link.delay.min.as_micros()))
+}
+
+fn link_to(network: &Network, event: EventId) -> &ContingentLink {
+    match network.link_of(event) {
+        Some(link) => &network.contingents()[link],
+        None => unreachable!("trees hold contingent events only"),
+    }
+}

@@ -7,7 +7,8 @@
 #[path = "../../network/tests/oracle/mod.rs"]
 mod oracle;
 
-use kirk_network::{Network, Time};
+use kirk_network::json::Seconds;
+use kirk_network::{Duration, EventId, Network, Time};
 use kirk_runtime::{Execution, How, Outcome, Plan, Simulation, Strategy, Temper, simulate, verify};
 use oracle::random::{self, Shape};
 
@@ -24,28 +25,35 @@ fn run(plan: &Plan, strategy: Strategy, nature: Temper, seed: u64) -> Execution 
     simulate(plan, "random", &simulation).expect("no observations are prescribed")
 }
 
-/// What is wrong with an execution, by its true times alone.
+/// When an event truly happened.
+fn truth(network: &Network, execution: &Execution, event: EventId) -> Option<i64> {
+    let row = execution.rows.iter().find(|row| row.event == network.id(event));
+    row.and_then(|row| row.truth).map(|time| time.0.as_micros())
+}
+
+/// A requirement that does not hold in true time.
+fn broken_requirement(network: &Network, execution: &Execution) -> Option<String> {
+    network.requirements().iter().find_map(|requirement| {
+        let end = |event| truth(network, execution, event).unwrap();
+        let length = end(requirement.to) - end(requirement.from);
+        let low = requirement.lower.finite().is_some_and(|lower| length < lower.as_micros());
+        let high = requirement.upper.finite().is_some_and(|upper| length > upper.as_micros());
+        (low || high).then(|| format!("{requirement:?} has length {length}"))
+    })
+}
+
+/// What is wrong with an execution, by its true times alone, and by what it claims.
 fn violation(network: &Network, execution: &Execution) -> Option<String> {
     if execution.outcome != Outcome::Completed {
         return Some(format!("{:?}", execution.failure));
     }
-    let truth = |event| {
-        let name = network.id(event);
-        let row = execution.rows.iter().find(|row| row.event == name);
-        row.and_then(|row| row.truth).map(|time| time.0.as_micros())
-    };
-    if let Some(event) = network.event_ids().find(|&event| truth(event).is_none()) {
+    if let Some(event) = network.event_ids().find(|&event| truth(network, execution, event).is_none()) {
         return Some(format!("{} never happened", network.id(event)));
     }
-    let length = |from, to| truth(to).unwrap() - truth(from).unwrap();
-    for requirement in network.requirements() {
-        let length = length(requirement.from, requirement.to);
-        let low = requirement.lower.finite().is_some_and(|lower| length < lower.as_micros());
-        let high = requirement.upper.finite().is_some_and(|upper| length > upper.as_micros());
-        if low || high {
-            return Some(format!("{requirement:?} has length {length}"));
-        }
+    if let Some(broken) = broken_requirement(network, execution) {
+        return Some(broken);
     }
+    let length = |from, to| truth(network, execution, to).unwrap() - truth(network, execution, from).unwrap();
     for link in network.contingents() {
         let length = length(link.from, link.to);
         assert!(
@@ -156,6 +164,43 @@ fn optimistic_never_finishes_later_than_buffer_on_the_same_durations_and_delays(
             );
         }
     }
+}
+
+#[test]
+fn the_verifier_finds_every_decision_that_breaks_a_requirement() {
+    let mut broken = 0;
+    for seed in 0..cases(2000) {
+        let network = random::network(seed, &shapes()[(seed % 4) as usize]);
+        let Ok(plan) = Plan::new(&network) else { continue };
+        let network = plan.network();
+        let mut execution = run(&plan, Strategy::Optimistic, Temper::Random, seed);
+        // One event of ours a little earlier or later; what activates a link would change what Nature does.
+        let starts = |name: &str| network.contingents().iter().any(|link| network.id(link.from) == name);
+        let ours: Vec<usize> = (1..execution.rows.len())
+            .filter(|&at| {
+                let name = &execution.rows[at].event;
+                let alone =
+                    network.find(name).is_some_and(|event| network.events()[event.index()].names.len() == 1);
+                execution.rows[at].how == How::Dispatched && alone && !starts(name)
+            })
+            .collect();
+        if ours.is_empty() {
+            continue;
+        }
+        let mut random = random::Random::new(seed);
+        let row = &mut execution.rows[*random.choose(&ours)];
+        let time = row.time.map_or(0, |time| time.0.as_micros());
+        let moved = (time + random.within(-5..=5) * 1_000_000).max(0);
+        row.time = Some(Seconds(Duration::from_micros(moved)));
+        row.truth = row.time;
+        if broken_requirement(network, &execution).is_some() {
+            broken += 1;
+            assert!(!verify(network, &execution).is_empty(), "seed {seed}: {}", random::describe(network));
+        } else {
+            assert_eq!(verify(network, &execution), [], "seed {seed}: {}", random::describe(network));
+        }
+    }
+    assert!(broken * 20 > cases(2000), "only {broken} were broken");
 }
 
 #[test]

@@ -242,8 +242,11 @@ pub(crate) enum Family {
         #[arg(long)]
         clean_up_at_end: bool,
         /// For how many activities more than there are tasks the consumables last.
-        #[arg(long, default_value_t = 1, value_name = "N")]
+        #[arg(long, default_value_t = 0, value_name = "N")]
         spare: u32,
+        /// What bounds are drawn from.
+        #[arg(long, value_enum, default_value_t = BoundsKind::Tables, value_name = "KIND")]
+        bounds: BoundsKind,
     },
     /// Astronauts who sample rocks with the advice of scientists on Earth.
     Sampling {
@@ -293,6 +296,14 @@ pub(crate) struct Size {
     /// Where to write it, instead of standard output.
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: Option<String>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum BoundsKind {
+    /// What gives the tables of the thesis.
+    Tables,
+    /// What the text of the thesis says.
+    Text,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -3,12 +3,12 @@
 use std::io;
 
 use kirk_network::generate::{
-    Exponential, GenerateError, Lambda, LaneOptions, Link, MOST_ATTEMPTS, RepeaterOptions, SamplingOptions,
-    controllable, lanes, repeaters, sampling,
+    Bounds, Exponential, GenerateError, Lambda, LaneOptions, Link, MOST_ATTEMPTS, RepeaterOptions,
+    SamplingOptions, controllable, lanes, repeaters, sampling,
 };
 use kirk_network::{Network, json};
 
-use crate::args::{Common, Family, Generate, LinkKind, Size};
+use crate::args::{BoundsKind, Common, Family, Generate, LinkKind, Size};
 use crate::output::{Status, complain, print, remark};
 
 pub(crate) fn generate(arguments: &Generate, common: &Common) -> io::Result<Status> {
@@ -59,12 +59,16 @@ fn make(family: &Family, seed: u64) -> Result<Network, GenerateError> {
     let Size { agents, tasks, .. } = *family.size();
     let mean = |lambda| Exponential { lambda, lambda_is: Lambda::Mean };
     match family {
-        Family::Repeaters { lambda, clean_up, clean_up_at_end, spare, .. } => {
+        Family::Repeaters { lambda, clean_up, clean_up_at_end, spare, bounds, .. } => {
             let options = RepeaterOptions {
                 delay: mean(*lambda),
                 last_link: link(*clean_up),
                 clean_up_at_end: *clean_up_at_end,
                 spare: *spare,
+                bounds: match bounds {
+                    BoundsKind::Tables => Bounds::Tables,
+                    BoundsKind::Text => Bounds::Text,
+                },
             };
             repeaters(agents, tasks, seed, &options)
         }

@@ -80,7 +80,8 @@ fn a_controllable_network_is_found_and_its_seed_told() {
 
 #[test]
 fn when_no_seed_will_do_the_answer_is_no() {
-    let hopeless = ["generate", "repeaters", "--clean-up", "contingent", "--spare", "0", "--controllable"];
+    let hopeless =
+        ["generate", "repeaters", "--clean-up", "contingent", "--bounds", "text", "--controllable"];
     let output = kirk(&hopeless);
     assert_eq!((output.status.code(), stdout(&output)), (Some(1), String::new()));
     assert!(stderr(&output).contains("none of the 1000 seeds from 0 on"), "{}", stderr(&output));

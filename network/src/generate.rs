@@ -28,7 +28,7 @@ use crate::reduce::reduce;
 use random::Random;
 
 pub use lanes::{LaneOptions, lanes};
-pub use repeaters::{RepeaterOptions, repeaters};
+pub use repeaters::{Bounds, RepeaterOptions, repeaters};
 pub use sampling::{SamplingOptions, sampling};
 
 /// No network generated here has more events than this.

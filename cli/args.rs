@@ -25,7 +25,7 @@ pub(crate) struct Common {
     /// Say only what was asked for: no notes, no warnings.
     #[arg(short, long, global = true)]
     pub(crate) quiet: bool,
-    /// Say more.
+    /// Also say how the news of each contingent event is treated.
     #[arg(short, long, global = true, conflicts_with = "quiet")]
     pub(crate) verbose: bool,
 }

@@ -14,6 +14,7 @@ use crate::args::{Check, Common, Delays, TextOrJson};
 use crate::conflict::{self, MemberJson};
 use crate::input::{Input, load};
 use crate::json::line;
+use crate::news::treatment;
 use crate::output::{Status, print, print_line};
 use crate::report::{DiagnosticJson, Reporter};
 
@@ -43,6 +44,11 @@ fn check_one(file: &str, arguments: &Check, common: &Common) -> io::Result<Statu
             reporter.show(&input.diagnostics, common)?;
             if !common.quiet || status == Status::Yes {
                 print_line(&verdict_line(file, &input, judged.as_ref(), arguments))?;
+            }
+            if common.verbose
+                && let Some(network) = &input.network
+            {
+                print(&treatment(network))?;
             }
         }
     }

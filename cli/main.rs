@@ -11,6 +11,7 @@ mod fmt;
 mod generate;
 mod input;
 mod json;
+mod news;
 mod output;
 mod report;
 mod run;

@@ -26,6 +26,11 @@ pub(crate) fn print_line(text: &str) -> io::Result<()> {
     print(&format!("{text}\n"))
 }
 
+/// Prints a text to standard error as it is.
+pub(crate) fn eprint(text: &str) -> io::Result<()> {
+    io::stderr().lock().write_all(text.as_bytes())
+}
+
 /// Prints a message about the command line to standard error.
 pub(crate) fn complain(message: &str) {
     // If standard error is closed there is nobody to tell.

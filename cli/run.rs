@@ -15,7 +15,8 @@ use crate::check::too_large;
 use crate::conflict;
 use crate::input::{load_all, read};
 use crate::json::line;
-use crate::output::{Status, complain, print};
+use crate::news::treatment;
+use crate::output::{Status, complain, eprint, print};
 use crate::report::Reporter;
 use crate::timetable::timetable;
 
@@ -50,6 +51,9 @@ pub(crate) fn run(arguments: &Run, common: &Common) -> io::Result<Status> {
         Some(Err(_)) => return Ok(Status::No),
         Some(Ok(plan)) => plan,
     };
+    if common.verbose {
+        eprint(&treatment(plan.network()))?;
+    }
     let given = Observations::collect(arguments, plan.network());
     if !given.diagnostics.is_empty() {
         Reporter::new(&given.sources).show(&given.diagnostics, common)?;

@@ -320,6 +320,21 @@ fn verify_finds_what_was_changed_in_a_record() {
 }
 
 #[test]
+fn verbose_says_how_the_news_of_each_event_is_treated() {
+    let output = kirk(&["check", "examples/rmpl/robot.rmpl", "--verbose"]);
+    let text = stdout(&output);
+    let downlink =
+        "`human-downlink-science:end`: heard 5 to 15 s late; acted on 30 to 35 s after `main:start`";
+    assert!(text.contains(downlink), "{text}");
+    let hidden = kirk_with_input(
+        &["check", "-", "--verbose"],
+        br#"{"format": "kirk-network/1", "origin": "a", "events": ["a", "b"],
+             "contingents": [{"from": "a", "to": "b", "lower": 1, "upper": 3, "delay": [3, 8]}]}"#,
+    );
+    assert!(stdout(&hidden).contains("its news is not needed"), "{}", stdout(&hidden));
+}
+
+#[test]
 fn help_and_version_are_not_errors() {
     for arguments in [&["--help"][..], &["--version"], &["run", "--help"], &["check", "--help"]] {
         assert_eq!(kirk(arguments).status.code(), Some(0), "{arguments:?}");

@@ -19,8 +19,9 @@ const MISSION: &str = "(defpackage #:mission (:use #:tools))
 (in-package #:mission)
 (define-control-program main ()
   (with-temporal-constraint (simple-temporal :upper-bound 60)
-    (drive)
-    (delay +pause+)))
+    (sequence (:slack t)
+      (drive)
+      (delay +pause+))))
 ";
 
 /// Runs kirk in a folder with these files.

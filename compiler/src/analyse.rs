@@ -109,6 +109,7 @@ impl Analyser<'_> {
                     .primary("only a primitive program has a duration of its own")
                     .help("To limit how long the body takes, put `(with-temporal-constraint (simple-temporal ...) ...)` around it."),
             ),
+            Some(_) if definition.damaged => {}
             Some(duration) => self.problems.push(
                 Diagnostic::error(Code::NoBody, definition.name.span, format!("`{name}` is neither primitive nor has it a body"))
                     .primary("nothing says what this program does")
@@ -205,7 +206,7 @@ fn entry(program: &ast::Program, names: &Names, options: &Options, problems: &mu
         names.program(&ident, home)
     };
     let found = homes.iter().find_map(plain);
-    if found.is_none() && !problems.has_lost_definitions() {
+    if found.is_none() && !problems.has_lost(&wanted) {
         let candidates: Vec<&str> = program
             .programs
             .iter()

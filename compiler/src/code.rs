@@ -93,6 +93,8 @@ codes! {
     NoBounds = 411, "a constraint that allows everything", bounds::NO_BOUNDS;
     BadCount = 412, "not a number of repetitions", bounds::BAD_COUNT;
     SameEvent = 413, "a constraint between an event and itself", bounds::SAME_EVENT;
+    NeverBinds = 414, "an upper bound that is never reached", bounds::NEVER_BINDS;
+    UselessNews = 415, "news that comes too irregularly to be of use", bounds::USELESS_NEWS;
     UnknownPackage = 501, "a package that is not defined", worlds::UNKNOWN_PACKAGE;
     PackageNotChosen = 502, "several packages and none chosen", worlds::PACKAGE_NOT_CHOSEN;
     UnknownClass = 503, "a class that is not defined", worlds::UNKNOWN_CLASS;

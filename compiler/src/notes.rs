@@ -1,5 +1,9 @@
 //! Notes on models that are legal and may surprise.
 
+mod bounds;
+
+pub use bounds::notes_on_bounds;
+
 use std::collections::BTreeMap;
 
 use kirk_network::{Bound, Delay, Duration, Network};

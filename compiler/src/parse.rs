@@ -19,6 +19,7 @@ use crate::nearest::{did_you_mean, nearest};
 use crate::problem::Problems;
 use crate::read::foreign::DEFINITIONS;
 use crate::source::Span;
+use declaration::DECLARATIONS;
 
 /// The package of definitions that no `in-package` comes before.
 pub const DEFAULT_PACKAGE: &str = "cl-user";
@@ -31,17 +32,20 @@ pub fn parse(forms: &[Form], program: &mut Program, problems: &mut Problems) {
             if !form.is_error() {
                 unknown_top_level(form, problems);
             }
+            problems.lose(form);
             continue;
         };
         let mut word = word;
         if !DEFINITIONS.contains(&word) {
             unknown_top_level(form, problems);
+            problems.lose(form);
             // A slip in the operator says enough to go on with what was meant.
             match nearest(word, DEFINITIONS).filter(|_| !rest.is_empty()) {
                 Some(meant) => word = meant,
                 None => continue,
             }
         }
+        let before = problems.errors();
         match word {
             "define-control-program" => program.programs.extend(control_program(form, rest, &home, problems)),
             "defclass" => program.classes.extend(class::class(form, rest, &home, problems)),
@@ -80,6 +84,10 @@ pub fn parse(forms: &[Form], program: &mut Program, problems: &mut Problems) {
             },
             _ => {}
         }
+        let is_class = word == "defclass";
+        if problems.is_damaged(form.span) || is_class && problems.errors() > before {
+            problems.lose(form);
+        }
     }
 }
 
@@ -113,7 +121,7 @@ fn control_program(
         effect: None,
         body: Vec::new(),
         span: form.span,
-        damaged: false,
+        damaged: problems.is_damaged(form.span),
     };
     let rest = match rest.split_first() {
         Some((Form { kind: FormKind::List(items), .. }, rest)) if !is_body(rest, items) => {
@@ -139,7 +147,7 @@ fn control_program(
             {
                 program.documentation = Some(text.clone());
             }
-            FormKind::List(_) if item.call().is_some_and(|(word, _)| word == "declare") => {
+            FormKind::List(_) if is_declaration(item, problems) => {
                 declaration::declare(item, &mut program, problems);
             }
             _ => {
@@ -150,6 +158,27 @@ fn control_program(
         }
     }
     Some(program)
+}
+
+/// True for `(declare ...)`, also if it is misspelt and what is in it leaves no doubt.
+fn is_declaration(item: &Form, problems: &mut Problems) -> bool {
+    let Some((word, rest)) = item.call() else { return false };
+    if word == "declare" {
+        return true;
+    }
+    let inside = rest.first().and_then(Form::call).map(|(word, _)| word);
+    let meant =
+        nearest(word, ["declare"]).is_some() && inside.is_some_and(|word| DECLARATIONS.contains(&word));
+    if meant {
+        let at = item.list().and_then(|items| items.first()).map_or(item.span, |first| first.span);
+        let message = format!("there is no operator `{}`", clip(word));
+        problems.push(
+            Diagnostic::error(Code::UnknownOperator, at, message)
+                .primary("neither an operator nor a program")
+                .help("Did you mean `declare`?"),
+        );
+    }
+    meant
 }
 
 /// True if a list where the parameters belong is a declaration or a body form: the parameter list was forgotten.
@@ -210,11 +239,13 @@ fn named_number(form: &Form, rest: &[Form], home: &str, problems: &mut Problems)
             }),
             None => {
                 problems.push(unexpected(name, "a name", SHAPE));
+                problems.lose(form);
                 None
             }
         },
         _ => {
             problems.push(expected(form, "a name and a number were expected", SHAPE));
+            problems.lose(form);
             None
         }
     }

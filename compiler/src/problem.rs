@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 use crate::code::Code;
 use crate::diagnostic::{Diagnostic, Severity};
+use crate::form::Form;
 use crate::source::Span;
 
 /// How many messages about one source are kept; the rest are counted.
@@ -16,8 +17,10 @@ pub struct Problems {
     seen: HashSet<(Code, Span)>,
     /// For every source: how many are kept, and how many more there were.
     counts: BTreeMap<u32, (usize, usize)>,
-    errors: bool,
+    errors: usize,
     lost: bool,
+    /// The words of what could not be understood: they may be names.
+    lost_words: HashSet<String>,
     /// Forms that were not read to their end: what else is wrong with them follows from that.
     muted: BTreeSet<(u32, u32, u32)>,
 }
@@ -28,7 +31,7 @@ impl Problems {
         if self.is_muted(diagnostic.span) {
             return;
         }
-        self.errors |= diagnostic.severity == Severity::Error;
+        self.errors += usize::from(diagnostic.severity == Severity::Error);
         let counts = self.counts.entry(diagnostic.span.source).or_default();
         if counts.0 >= MAX_PER_SOURCE {
             counts.1 += 1;
@@ -58,6 +61,38 @@ impl Problems {
         self.lost = true;
     }
 
+    /// Says that a form could not be understood, which has been reported: what is named in it may be missing elsewhere.
+    pub fn lose(&mut self, form: &Form) {
+        let mut open = vec![form];
+        while let Some(form) = open.pop() {
+            if let Some(symbol) = form.symbol() {
+                self.lost_words.insert(symbol.name.clone());
+            }
+            open.extend(form.list().unwrap_or_default());
+        }
+    }
+
+    /// Says that a text could not be understood, as `lose` does of a form.
+    pub fn lose_text(&mut self, text: &str) {
+        let words = text.split(|c: char| c.is_whitespace() || matches!(c, '(' | ')' | '\'' | '"'));
+        self.lost_words.extend(words.filter(|word| !word.is_empty()).map(str::to_lowercase));
+    }
+
+    /// True if this name may have been defined in what could not be understood.
+    pub fn has_lost(&self, name: &str) -> bool {
+        self.lost || self.lost_words.contains(name)
+    }
+
+    /// How many errors were reported so far.
+    pub fn errors(&self) -> usize {
+        self.errors
+    }
+
+    /// True if a form could not be read as it should be, which has been reported.
+    pub fn is_damaged(&self, form: Span) -> bool {
+        self.is_muted(form)
+    }
+
     /// True if definitions may have been lost.
     pub fn has_lost_definitions(&self) -> bool {
         self.lost
@@ -65,7 +100,7 @@ impl Problems {
 
     /// True if anything reported so far was an error.
     pub fn has_errors(&self) -> bool {
-        self.errors
+        self.errors > 0
     }
 
     /// Everything reported, sorted by place, with a last message for each source that had too many.

@@ -66,6 +66,8 @@ struct Open {
     column: usize,
     mark: Mark,
     items: Vec<Form>,
+    /// The last thing in it that a line begins with: its column, and where it is.
+    line_item: Option<(usize, usize)>,
 }
 
 /// What opened a form.
@@ -99,6 +101,8 @@ struct Reader<'a> {
     skipped: usize,
     /// The first form whose contents are indented as if it had been closed.
     suspect: Option<usize>,
+    /// The first line that is indented as if a form that is closed were still open: that form, and the line.
+    closed_early: Option<(usize, usize)>,
     /// True if the nesting limit has been reported for this top-level form.
     too_deep: bool,
     line_start: usize,
@@ -117,6 +121,7 @@ impl<'a> Reader<'a> {
             stack: Vec::new(),
             skipped: 0,
             suspect: None,
+            closed_early: None,
             too_deep: false,
             line_start: 0,
             first_on_line: true,
@@ -203,7 +208,26 @@ impl<'a> Reader<'a> {
                 .filter(|top| !top.mark.is_prefix() && column <= top.column)
                 .map(|top| top.at);
         }
-        self.stack.push(Open { at, column, mark, items: Vec::new() });
+        self.note_item(at);
+        self.stack.push(Open { at, column, mark, items: Vec::new(), line_item: None });
+    }
+
+    /// Keeps track of what the lines begin with, and how far it is indented.
+    fn note_item(&mut self, at: usize) {
+        let column = at - self.line_start;
+        let first = self.first_on_line;
+        match self.stack.last_mut() {
+            None => self.closed_early = None,
+            Some(top) if first => {
+                if let Some((before, item)) = top.line_item
+                    && before < column
+                {
+                    self.closed_early.get_or_insert((item, at));
+                }
+                top.line_item = Some((column, at));
+            }
+            Some(_) => {}
+        }
     }
 
     fn close(&mut self, token: Token) {
@@ -251,6 +275,7 @@ impl<'a> Reader<'a> {
     }
 
     fn atom(&mut self, token: Token) {
+        self.note_item(token.start);
         let text = &self.text[token.start..token.end];
         let span = self.span(token.start, token.end);
         let kind = match token.kind {
@@ -408,7 +433,19 @@ impl<'a> Reader<'a> {
                 "the definition before it already ends here",
             );
         }
+        if let Some((item, line)) = self.closed_early.take() {
+            let word = self.text[item..].split(|c: char| c.is_whitespace() || c == ')').next().unwrap_or("");
+            let message = format!(
+                "this line is indented as if `{}` were still open: look at the parentheses just before it",
+                clip(word)
+            );
+            problem = problem.label(self.span(line, line + 1), message);
+        }
         self.problems.push(problem);
+        // Whatever else is wrong with the definition follows from that.
+        if let (Some(_), Some(form)) = (closed_at, self.forms.last()) {
+            self.problems.mute(form.span);
+        }
     }
 
     /// Text outside all forms: reported once for a run of lines, which is left out.
@@ -445,6 +482,7 @@ impl<'a> Reader<'a> {
             .help("A comment begins with `;`. A program is `(define-control-program name () ...)`."),
         };
         self.problems.push(problem);
+        self.problems.lose_text(shown);
         self.tokens.seek(end.max(token.end.min(self.text.len())).max(token.start + 1));
         self.line_start = self.text[..self.tokens.position()].rfind('\n').map_or(0, |n| n + 1);
     }

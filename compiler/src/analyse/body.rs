@@ -119,7 +119,7 @@ impl Analyser<'_> {
         let program = self.names.program(&event.name, &self.definition.home);
         let is_label = event.name.package.is_none() && self.labels.contains(&event.name.name);
         if program.is_none() && !is_label {
-            if !self.problems.has_lost_definitions() {
+            if !self.problems.has_lost(&event.name.name) {
                 self.unknown_event(&event.name);
             }
             return None;
@@ -148,7 +148,7 @@ impl Analyser<'_> {
         let arguments: Vec<Expression> = call.arguments.iter().map(|value| self.argument(value)).collect();
         let Some(program) = self.names.program(&call.program, home) else {
             let span = call.program.span;
-            if self.problems.has_lost_definitions() {
+            if self.problems.has_lost(&call.program.name) {
                 return None;
             }
             let problem = match self.problems.wants(span.source) {
@@ -160,7 +160,7 @@ impl Analyser<'_> {
         };
         let target = &self.program.programs[program];
         let (wanted, given) = (target.parameters.len(), call.arguments.len());
-        if wanted != given {
+        if wanted != given && !target.damaged {
             let count = |n: usize| if n == 1 { "1 argument".to_string() } else { format!("{n} arguments") };
             let name = clip(&target.name.name);
             self.problems.push(

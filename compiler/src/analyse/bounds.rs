@@ -57,9 +57,11 @@ impl Analyser<'_> {
     /// Resolves both bounds, which are not negative; a missing lower bound is 0, a missing upper bound none.
     pub(super) fn bounds(&mut self, written: &ast::Bounds, low: &str, high: &str) -> Bounds {
         let bounds = self.signed_bounds(written, low, high);
-        for (amount, what) in [(&bounds.lower, low), (&bounds.upper, high)] {
+        let both = [(&bounds.lower, &written.lower, low), (&bounds.upper, &written.upper, high)];
+        for (amount, written, what) in both {
             if let Some(problem) = amount.value.seconds().and_then(|value| negative(value, amount.span, what))
             {
+                let problem = self.with_definition(problem, written.as_ref());
                 self.problems.push(problem);
             }
         }
@@ -81,12 +83,30 @@ impl Analyser<'_> {
             && let Some(problem) = reversed(least, most, &bounds, low, high)
         {
             let help = "Without a `:lower-bound`, it is 0: the first event comes first. For the other way round, swap the two events.";
-            self.problems.push(match most < Duration::ZERO && written.lower.is_none() {
+            let problem = match most < Duration::ZERO && written.lower.is_none() {
                 true => problem.primary("no lower bound is given").help(help),
                 false => problem,
-            });
+            };
+            let problem = self.with_definition(problem, written.lower.as_ref());
+            let problem = self.with_definition(problem, written.upper.as_ref());
+            self.problems.push(problem);
         }
         bounds
+    }
+
+    /// Shows where a named number is defined, if that is what is written.
+    fn with_definition(&self, problem: Diagnostic, written: Option<&ast::Amount>) -> Diagnostic {
+        let Some(ast::Amount { kind: ast::AmountKind::Named(name), .. }) = written else { return problem };
+        if name.package.is_none() && self.scope.contains(&name.name) {
+            return problem;
+        }
+        match self.names.number(name, &self.definition.home) {
+            Some(index) => problem.label(
+                self.program.parameters[index].name.span,
+                format!("`{}` is defined here", clip(&name.name)),
+            ),
+            None => problem,
+        }
     }
 
     fn delay(&mut self, written: &ast::Bounds) -> Bounds {

@@ -119,7 +119,7 @@ impl<'a> Classes<'a> {
         let wanted = &slot.accessor.name;
         let found: Vec<&Slot> =
             all().filter(|slot| slot.accessors.iter().any(|name| name.name == *wanted)).collect();
-        if found.is_empty() {
+        if found.is_empty() && !problems.has_lost(wanted) {
             let known = all().flat_map(|slot| &slot.accessors).map(|name| name.name.as_str());
             let slot_itself = all().find(|slot| slot.name.name == *wanted);
             let help = match (slot_itself, nearest(wanted, known)) {

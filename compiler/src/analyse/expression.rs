@@ -146,6 +146,9 @@ impl Resolver<'_> {
     }
 
     fn unknown_name(&mut self, ident: &Ident) {
+        if self.problems.has_lost(&ident.name) {
+            return;
+        }
         let variables = self.scope.iter().map(String::as_str);
         let numbers = self.program.parameters.iter().map(|p| p.name.name.as_str());
         let help =

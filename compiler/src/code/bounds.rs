@@ -118,3 +118,36 @@ one of them should be the other end, or that of another occurrence.",
   (a)
   (between (start a) (end a) (simple-temporal :upper-bound 5)))",
 };
+
+pub(super) const NEVER_BINDS: Page = Page {
+    meaning: "The activities inside a `with-temporal-constraint` follow one another without slack, and even the longest of their
+durations add up to less than its upper bound. So the bound changes nothing. That may be just as well; or the
+activities were meant to have slack, or the bound was meant in another unit.",
+    wrong: "(define-control-program a () (declare (primitive) (duration (simple :upper-bound 10))))
+(define-control-program main ()
+  (with-temporal-constraint (simple-temporal :upper-bound 60)
+    (sequence (:slack nil) (a) (a))))",
+    right: "(define-control-program a () (declare (primitive) (duration (simple :upper-bound 10))))
+(define-control-program main ()
+  (with-temporal-constraint (simple-temporal :upper-bound 60)
+    (sequence (:slack t) (a) (a))))",
+};
+
+pub(super) const USELESS_NEWS: Page = Page {
+    meaning: "An end that Nature decides is heard some time later, and how much later varies as much as the duration itself, or
+more. In the worst case the news then says nothing that was not known before: a short duration heard late looks
+like a long one heard early. A plan that holds in every case is made as if the news never came. It becomes
+useful when the delay varies by less than the duration, however long it is.",
+    wrong: "(define-control-program main ()
+  (declare (primitive)
+    (duration (simple :lower-bound 20 :upper-bound 25
+                      :min-observation-delay 0
+                      :max-observation-delay 10)
+      :contingent t)))",
+    right: "(define-control-program main ()
+  (declare (primitive)
+    (duration (simple :lower-bound 20 :upper-bound 25
+                      :min-observation-delay 8
+                      :max-observation-delay 10)
+      :contingent t)))",
+};

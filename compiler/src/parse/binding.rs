@@ -33,10 +33,12 @@ pub(super) fn binding(
                 .primary("parentheses are missing around this name and its value")
                 .help(SHAPE),
         );
+        problems.lose(names);
         if let [name, value] = pairs {
             bindings.extend(ident(name).map(|name| (name, argument(value, problems))));
         }
     } else if names.list().is_none() && names.word() != Some("nil") {
+        problems.lose(names);
         if !names.is_error() {
             problems.push(unexpected(names, "a list of names and values", SHAPE));
         }
@@ -76,14 +78,16 @@ pub(super) fn dotimes(form: &Form, operator: &Form, rest: &[Form], problems: &mu
         Some([variable, count]) => (ident(variable), count),
         _ => {
             if !head.is_error() {
-                problems.push(unexpected(head, "a name and a number of repetitions", SHAPE));
+                problems.push(unexpected(head, "`(name count)`", SHAPE));
             }
+            problems.lose(head);
             // What is wrong with the shape of the body is worth saying all the same.
             bodies(body, problems);
             return None;
         }
     };
     let Some(variable) = variable else {
+        problems.lose(head);
         problems.push(unexpected(head, "a name before the number of repetitions", SHAPE));
         bodies(body, problems);
         return None;
@@ -101,8 +105,9 @@ fn one(pair: &Form, shape: &str, problems: &mut Problems) -> Option<(Ident, Argu
         Some([name, value]) if name.symbol().is_some() => Some((ident(name)?, argument(value, problems))),
         _ => {
             if !pair.is_error() {
-                problems.push(unexpected(pair, "a name and its value", shape));
+                problems.push(unexpected(pair, "`(name value)`", shape));
             }
+            problems.lose(pair);
             None
         }
     }

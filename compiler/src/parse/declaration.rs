@@ -11,7 +11,7 @@ use crate::form::{Form, clip};
 use crate::nearest::did_you_mean;
 use crate::problem::Problems;
 
-const DECLARATIONS: [&str; 4] = ["primitive", "duration", "requires", "effect"];
+pub(super) const DECLARATIONS: [&str; 4] = ["primitive", "duration", "requires", "effect"];
 const SHAPE: &str = "A duration is `(duration (simple :lower-bound 15 :upper-bound 20))`, with `:contingent t` at its end if Nature decides.";
 
 /// Adds the declarations of one `declare` form to the program.
@@ -95,7 +95,7 @@ fn duration(form: &Form, rest: &[Form], problems: &mut Problems) -> Option<Durat
         ["lower-bound", "upper-bound", "min-observation-delay", "max-observation-delay", "contingent"];
     let [lower, upper, min, max, misplaced] = options(inside, BOUNDS, "simple", problems);
     let [contingent] = options(rest, ["contingent"], "duration", problems);
-    if let (Some(misplaced), None) = (misplaced, contingent) {
+    if let (Some(misplaced), None) = (misplaced.filter(|form| !form.is_error()), contingent) {
         problems.push(
             Diagnostic::error(
                 Code::WrongShape,
@@ -106,7 +106,8 @@ fn duration(form: &Form, rest: &[Form], problems: &mut Problems) -> Option<Durat
             .help("Write `(duration (simple ...) :contingent t)`."),
         );
     }
-    let delay = (min.is_some() || max.is_some()).then(|| Bounds {
+    let given = |form: Option<&Form>| form.is_some_and(|form| !form.is_error());
+    let delay = (given(min) || given(max)).then(|| Bounds {
         lower: min.map(|form| amount(form, "the shortest observation delay", problems)),
         upper: max.map(|form| amount(form, "the longest observation delay", problems)),
         span: min.or(max).map_or(simple.span, |form| form.span),

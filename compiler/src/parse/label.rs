@@ -19,6 +19,7 @@ pub(super) fn label(form: &Form, operator: &Form, rest: &[Form], problems: &mut 
         return None;
     };
     if body.is_empty() {
+        problems.lose(head);
         problems.push(
             Diagnostic::error(Code::WrongShape, operator.span, "this label names nothing")
                 .primary("a body form was expected after the name")

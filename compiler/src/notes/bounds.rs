@@ -1,0 +1,98 @@
+//! Notes on bounds and delays that change nothing.
+
+use kirk_network::{Bound, Duration};
+
+use crate::code::Code;
+use crate::diagnostic::Diagnostic;
+use crate::episode::{Episode, Interval, Kind};
+use crate::form::clip;
+
+/// Notes news that tells nothing, and upper bounds that are never reached.
+pub fn notes_on_bounds(root: &Episode) -> Vec<Diagnostic> {
+    let mut notes = Vec::new();
+    longest(root, &mut notes);
+    notes
+}
+
+/// How long an episode can take by what is inside it alone.
+fn longest(episode: &Episode, notes: &mut Vec<Diagnostic>) -> Bound {
+    let inside: Vec<Bound> = episode.parts.iter().map(|part| longest(part, notes)).collect();
+    let inside = inside.into_iter();
+    let own = episode.duration.as_ref().map_or(Bound::Infinite, |duration| duration.upper);
+    let slack = episode.slack == Some(true) && !episode.parts.is_empty();
+    let parts = match episode.kind {
+        Kind::Primitive => {
+            notes.extend(useless_news(episode));
+            return own;
+        }
+        Kind::Delay => return own,
+        _ if slack => Bound::Infinite,
+        // Without slack, the parts of a parallel all take the same time.
+        Kind::Parallel => inside.reduce(least).unwrap_or(Bound::Finite(Duration::ZERO)),
+        Kind::Program | Kind::Sequence | Kind::WithTemporalConstraint => {
+            inside.fold(Bound::Finite(Duration::ZERO), sum)
+        }
+    };
+    if let (Kind::WithTemporalConstraint, Some(duration), Bound::Finite(most)) =
+        (episode.kind, &episode.duration, parts)
+    {
+        notes.extend(never_binds(duration, most));
+    }
+    least(parts, own)
+}
+
+/// The news of an end is of use if it may say something: in the worst case it is as uncertain as the end itself.
+fn useless_news(episode: &Episode) -> Option<Diagnostic> {
+    let (duration, delay) = (episode.duration.as_ref()?, episode.delay.as_ref()?);
+    let (longest, latest) = (duration.upper.finite()?, delay.upper.finite()?);
+    let width = longest.checked_sub(duration.lower)?;
+    let spread = latest.checked_sub(delay.lower)?;
+    if spread == Duration::ZERO || width == Duration::ZERO || width > spread {
+        return None;
+    }
+    let name = clip(episode.name.split('#').next().unwrap_or(&episode.name));
+    Some(
+        Diagnostic::note(
+            Code::UselessNews,
+            delay.upper_span,
+            format!("the news of the end of `{name}` comes too irregularly to be of use"),
+        )
+        .primary(format!("the delay varies by {spread} s"))
+        .label(duration.upper_span, format!("the duration varies by only {width} s"))
+        .help(
+            "The plan cannot rely on this news and is made as if it never came. It would help if the delay varied by less \
+             than the duration.",
+        ),
+    )
+}
+
+fn never_binds(duration: &Interval, most: Duration) -> Option<Diagnostic> {
+    let limit = duration.upper.finite().filter(|limit| *limit > most)?;
+    Some(
+        Diagnostic::note(
+            Code::NeverBinds,
+            duration.upper_span,
+            format!("this upper bound of {limit} s is never reached"),
+        )
+        .primary(format!("what is inside takes at most {most} s"))
+        .help(
+            "Without slack, the durations inside add up to less than the bound, so it changes nothing. If time may pass \
+             between the activities, give them slack (`:slack t`).",
+        ),
+    )
+}
+
+fn least(a: Bound, b: Bound) -> Bound {
+    match (a, b) {
+        (Bound::Finite(a), Bound::Finite(b)) => Bound::Finite(a.min(b)),
+        (Bound::Finite(a), Bound::Infinite) | (Bound::Infinite, Bound::Finite(a)) => Bound::Finite(a),
+        (Bound::Infinite, Bound::Infinite) => Bound::Infinite,
+    }
+}
+
+fn sum(a: Bound, b: Bound) -> Bound {
+    match (a, b) {
+        (Bound::Finite(a), Bound::Finite(b)) => a.checked_add(b).map_or(Bound::Infinite, Bound::Finite),
+        _ => Bound::Infinite,
+    }
+}

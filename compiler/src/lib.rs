@@ -41,6 +41,8 @@
 //! - A **form** is an s-expression with its place. A **program** is what `define-control-program` defines: **primitive** if
 //!   it is an activity, else it has a **body**.
 //! - An **episode** is one occurrence of a program or of a body form, from its start event to its end event.
+//! - A **label** is a name for an episode. A **scope** is how far such a name reaches: one call of a program, or one
+//!   repetition of a `dotimes`, with everything called from there.
 //! - The **origin** of a constraint is the place and the sentence it comes from. (The origin of a network, an event, is
 //!   another thing: the start of the entry program.)
 //! - A **diagnostic** has a stable [`Code`], a page for which [`explain`](fn@explain) gives, and places in the sources.
@@ -54,6 +56,7 @@
 //!   merged: every "at the same time" is a requirement [0, 0], so that a conflict can point at it.
 //! - Event names are unique, lower case, and depend on nothing but the source. Two runs give the same bytes.
 //! - Nothing a user wrote is ignored silently.
+//! - [`format`](fn@format) knows the tokens and not the language: what it returns is read as the same forms.
 //!
 //! # Deliberately absent
 //!

@@ -6,6 +6,7 @@ use crate::ast::{Condition, SlotOf};
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::form::Form;
+use crate::nearest::nearest;
 use crate::problem::Problems;
 
 /// Parses a condition; `None` if it makes no sense, which is reported.
@@ -36,14 +37,7 @@ pub(super) fn condition(form: &Form, problems: &mut Problems) -> Option<Conditio
                 ("at", Some("end")) => Condition::AtEnd(Box::new(part?)),
                 ("over", Some("all")) => Condition::OverAll(Box::new(part?)),
                 _ => {
-                    bad(
-                        problems,
-                        when,
-                        format!(
-                            "`{word}` needs {}",
-                            if word == "at" { "`:start` or `:end`" } else { "`:all`" }
-                        ),
-                    );
+                    problems.push(wrong_time(word, when));
                     return None;
                 }
             }
@@ -67,6 +61,18 @@ pub(super) fn condition(form: &Form, problems: &mut Problems) -> Option<Conditio
             }
         },
     })
+}
+
+/// Neither `at :start`, `at :end` nor `over :all`. Not inlined: conditions nest, and the stack is small.
+#[inline(never)]
+fn wrong_time(word: &str, when: &Form) -> Diagnostic {
+    let known: &[&str] = if word == "at" { &["start", "end"] } else { &["all"] };
+    let wanted = if word == "at" { "`:start` or `:end`" } else { "`:all`" };
+    let near = nearest(when.keyword().unwrap_or_default(), known.iter().copied());
+    let help = known.iter().map(|time| format!("`({word} :{time} ...)`")).collect::<Vec<_>>().join(" or ");
+    Diagnostic::error(Code::BadCondition, when.span, format!("`{word}` needs {wanted}"))
+        .primary("found this")
+        .help(near.map_or(format!("Write {help}."), |near| format!("Did you mean `:{near}`?")))
 }
 
 /// `(accessor object)`.

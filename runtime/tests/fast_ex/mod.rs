@@ -110,9 +110,7 @@ impl FastEx {
                 }
             }
         }
-        for at in 0..distance.len() {
-            self.to_origin[at] = distance[at];
-        }
+        self.to_origin = distance;
         self.from_origin = latest;
     }
 

@@ -293,9 +293,18 @@ pub(crate) struct Size {
     /// Try seeds from --seed on until the network is controllable, and say which one it was.
     #[arg(long)]
     pub(crate) controllable: bool,
+    /// Write it as a network or as an RMPL program.
+    #[arg(long, value_enum, default_value_t = JsonOrRmpl::Json)]
+    pub(crate) format: JsonOrRmpl,
     /// Where to write it, instead of standard output.
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: Option<String>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum JsonOrRmpl {
+    Json,
+    Rmpl,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

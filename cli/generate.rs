@@ -6,9 +6,9 @@ use kirk_network::generate::{
     Bounds, Exponential, GenerateError, Lambda, LaneOptions, Link, MOST_ATTEMPTS, RepeaterOptions,
     SamplingOptions, controllable, lanes, repeaters, sampling,
 };
-use kirk_network::{Network, json};
+use kirk_network::{Network, json, rmpl};
 
-use crate::args::{BoundsKind, Common, Family, Generate, LinkKind, Size};
+use crate::args::{BoundsKind, Common, Family, Generate, JsonOrRmpl, LinkKind, Size};
 use crate::output::{Status, complain, print, remark};
 
 pub(crate) fn generate(arguments: &Generate, common: &Common) -> io::Result<Status> {
@@ -42,7 +42,13 @@ pub(crate) fn generate(arguments: &Generate, common: &Common) -> io::Result<Stat
             }
         },
     };
-    let text = json::write(&network) + "\n";
+    let text = match size.format {
+        JsonOrRmpl::Json => json::write(&network) + "\n",
+        JsonOrRmpl::Rmpl => {
+            let program = rmpl::write(&network);
+            kirk_compiler::format(&program).unwrap_or(program)
+        }
+    };
     match &size.output {
         None => print(&text)?,
         Some(file) => {

@@ -114,3 +114,22 @@ fn parameters_that_make_no_sense_are_refused() {
         assert_eq!(stdout(&output), "");
     }
 }
+
+#[test]
+fn a_family_as_a_program_has_the_verdict_of_the_network() {
+    let mut verdicts = [0, 0];
+    for family in ["repeaters", "sampling", "lanes"] {
+        for seed in ["0", "1", "2", "3"] {
+            let arguments = ["generate", family, "--agents", "3", "--tasks", "3", "--seed", seed];
+            let network = kirk(&arguments);
+            let program = kirk(&[&arguments[..], &["--format", "rmpl"]].concat());
+            let verdict = kirk_with_input(&["check", "-", "--quiet"], &network.stdout).status.code();
+            let of_program = kirk_with_input(&["check", "-", "--quiet"], &program.stdout);
+            assert_eq!(of_program.status.code(), verdict, "{family} {seed}: {}", stderr(&of_program));
+            verdicts[verdict.unwrap() as usize] += 1;
+            let laid_out = kirk_with_input(&["fmt", "-"], &program.stdout);
+            assert_eq!(stdout(&laid_out), stdout(&program), "{family} {seed}");
+        }
+    }
+    assert!(verdicts.iter().all(|&count| count > 0), "{verdicts:?}");
+}

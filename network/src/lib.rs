@@ -65,6 +65,7 @@ pub mod model;
 pub mod plain;
 mod radix;
 pub mod reduce;
+pub mod rmpl;
 pub mod stnu;
 pub mod text;
 pub mod time;

@@ -564,7 +564,7 @@ fn a_network_is_drawn() {
 
 #[test]
 fn a_dispatchable_network_is_drawn() {
-    let text = "# Time-Point Names\nZ A C X\n# Ordinary Edges\nZ 20 A\nA 0 Z\nX -1 C\nC 6 X\nX 0 Z\n# Contingent Links\nA 2 9 C\n";
+    let text = "# Time-Point Names\nZ A C X\n# Ordinary Edges\nZ 20 A\nA 0 Z\nX 1 C\nC 6 X\nX 0 Z\n# Contingent Links\nA 2 9 C\n";
     let network = plain::read(text).unwrap();
     let reduction = reduce::reduce(&network).unwrap();
     let form = dispatchable::dispatchable(&reduction.stnu).unwrap().unwrap();
@@ -580,10 +580,10 @@ fn a_dispatchable_network_is_drawn() {
       n3 [label="C", style=dashed]
       n0 -> n1 [label="20"]
       n1 -> n0 [label="0"]
-      n2 -> n3 [label="-1"]
-      n3 -> n0 [label="0"]
+      n2 -> n1 [label="-1"]
+      n2 -> n3 [label="1"]
       n3 -> n2 [label="6"]
-      n2 -> n1 [label="C:-10", style=dashed]
+      n2 -> n1 [label="C:-8", style=dashed]
       n1 -> n3 [label="[2, 9]", color="black:invis:black", style=bold]
     }
     "#);

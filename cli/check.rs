@@ -42,9 +42,7 @@ fn check_one(file: &str, arguments: &Check, common: &Common) -> io::Result<Statu
         }
         TextOrJson::Text => {
             reporter.show(&input.diagnostics, common)?;
-            if !common.quiet || status == Status::Yes {
-                print_line(&verdict_line(file, &input, judged.as_ref(), arguments))?;
-            }
+            print_line(&verdict_line(file, &input, judged.as_ref(), arguments))?;
             if common.verbose
                 && let Some(network) = &input.network
             {

@@ -158,9 +158,14 @@ fn sexpr_of_json(text: &str) -> Result<String, Refusal> {
 
 fn no_such(arguments: &Compile) -> Refusal {
     Refusal::Options(format!(
-        "--emit {} cannot be written as {:?}; try text, json or sexpr",
+        "--emit {} cannot be written as {}; try {}",
         stage_name(arguments.emit),
-        arguments.format
+        if arguments.format == StageFormat::Dot { "dot" } else { "graphml" },
+        if arguments.emit == Stage::Dispatchable {
+            "text, json, sexpr or dot"
+        } else {
+            "text, json or sexpr"
+        }
     ))
 }
 

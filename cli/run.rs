@@ -190,6 +190,15 @@ impl Observations {
                 format!("`{name}` cannot be heard before the mission starts"),
                 "times are seconds after the start".to_string(),
             )),
+            // Another name of a merged event may say the same again.
+            Some(event)
+                if self
+                    .by_event
+                    .iter()
+                    .any(|(other, at, _)| *other == event && at.as_micros() == time.as_micros()) =>
+            {
+                None
+            }
             Some(event) if self.by_event.iter().any(|(other, ..)| *other == event) => {
                 Some((format!("`{name}` is observed twice"), "news of an event arrives once".to_string()))
             }

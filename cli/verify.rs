@@ -4,6 +4,7 @@ use std::io;
 
 use kirk_compiler::{Code, Diagnostic, Source, Span};
 use kirk_network::json::{ReadProblem, locate};
+use kirk_runtime::execution::FORMAT;
 use kirk_runtime::{Execution, verify as check};
 use serde::Serialize;
 
@@ -71,7 +72,15 @@ fn read_execution(file: &str) -> Result<Execution, Box<(Source, Diagnostic)>> {
         Box::new((Source::new(file, ""), Diagnostic::error(Code::CannotRead, Span::default(), message)))
     })?;
     let text = String::from_utf8_lossy(&bytes).into_owned();
-    serde_json::from_str(&text).map_err(|error| {
+    let read: Result<Execution, _> = serde_json::from_str(&text);
+    if let Ok(execution) = &read
+        && execution.format != FORMAT
+    {
+        let message = format!("the format is `{}`; this kirk reads `{FORMAT}`", execution.format);
+        let diagnostic = Diagnostic::error(Code::BadRecord, Span::new(0, 0, 0), message);
+        return Err(Box::new((Source::new(file, text.as_str()), diagnostic)));
+    }
+    read.map_err(|error| {
         let ReadProblem { offset, message } = locate(&text, &error);
         let diagnostic = Diagnostic::error(Code::BadRecord, Span::new(0, offset, offset), message)
             .help("kirk run --format json writes such a record");

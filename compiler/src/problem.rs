@@ -15,8 +15,8 @@ pub const MAX_PER_SOURCE: usize = 200;
 pub struct Problems {
     list: Vec<Diagnostic>,
     seen: HashSet<(Code, Span)>,
-    /// For every source: how many are kept, and how many more there were.
-    counts: BTreeMap<u32, (usize, usize)>,
+    /// For every source: how many are kept, how many more there were, and how bad the worst of those is.
+    counts: BTreeMap<u32, (usize, usize, Option<Severity>)>,
     errors: usize,
     lost: bool,
     /// The words of what could not be understood: they may be names.
@@ -35,6 +35,7 @@ impl Problems {
         let counts = self.counts.entry(diagnostic.span.source).or_default();
         if counts.0 >= MAX_PER_SOURCE {
             counts.1 += 1;
+            counts.2 = counts.2.into_iter().chain([diagnostic.severity]).min();
         } else if self.seen.insert((diagnostic.code, diagnostic.span)) {
             counts.0 += 1;
             self.list.push(diagnostic);
@@ -106,13 +107,13 @@ impl Problems {
     /// Everything reported, sorted by place, with a last message for each source that had too many.
     pub fn into_sorted(mut self) -> Vec<Diagnostic> {
         self.list.sort_by_key(|d| (d.span, d.severity, d.code));
-        for (source, (_, more)) in self.counts {
-            if more > 0 {
+        for (source, (_, more, worst)) in self.counts {
+            if let Some(severity) = worst {
                 let at = self.list.partition_point(|d| d.span.source <= source);
                 let span =
                     self.list.get(at.wrapping_sub(1)).map_or(Span { source, start: 0, end: 0 }, |d| d.span);
                 let message = format!("there are {more} more problems in this source");
-                let rest = Diagnostic::error(Code::TooManyProblems, span, message)
+                let rest = Diagnostic { severity, ..Diagnostic::error(Code::TooManyProblems, span, message) }
                     .primary(format!("kirk shows the first {MAX_PER_SOURCE} it finds"))
                     .help("Put the first ones right and look again: later problems often follow from earlier ones.");
                 self.list.insert(at, rest);

@@ -43,8 +43,23 @@ impl Dispatchable {
     }
 }
 
-/// Makes a network dispatchable; `None` if it is not controllable.
+/// Makes a network dispatchable; `None` if it is not controllable. No edge is needless.
 pub fn dispatchable(stnu: &Stnu) -> Result<Option<Dispatchable>, TooLarge> {
+    make(stnu, Effort::Minimal)
+}
+
+/// The same in less time: a form to be executed, with some needless edges.
+pub fn dispatchable_quickly(stnu: &Stnu) -> Result<Option<Dispatchable>, TooLarge> {
+    make(stnu, Effort::Quick)
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Effort {
+    Minimal,
+    Quick,
+}
+
+fn make(stnu: &Stnu, effort: Effort) -> Result<Option<Dispatchable>, TooLarge> {
     let Some(Solution { derived, waits, potential }) = solve(stnu)? else { return Ok(None) };
     let mut edges = stnu.edges.clone();
     edges.extend(derived);
@@ -54,7 +69,7 @@ pub fn dispatchable(stnu: &Stnu) -> Result<Option<Dispatchable>, TooLarge> {
     // What Nature keeps by herself helps to make other edges needless, and is needless itself.
     let nature = rigid.contracted(&nature_keeps(stnu))?;
     edges.extend(nature_keeps(stnu));
-    let mut kept = undominated(&rigid.contracted(&edges)?, potential)?;
+    let mut kept = undominated(&rigid.contracted(&edges)?, potential, effort)?;
     kept.retain(|edge| {
         nature.binary_search_by_key(&(edge.from, edge.to), |known| (known.from, known.to)).is_err()
     });
@@ -242,7 +257,7 @@ impl Rigid {
 ///
 /// From a source u, a node v at a distance d(v) >= 0 is needless if a shortest path to it passes a node w with
 /// d(w) <= d(v); one at a distance < 0 if a shortest path to it passes a node w with d(w) < 0.
-fn undominated(edges: &[Edge], potential: Vec<i64>) -> Result<Vec<Edge>, TooLarge> {
+fn undominated(edges: &[Edge], potential: Vec<i64>, effort: Effort) -> Result<Vec<Edge>, TooLarge> {
     /// What the search from one source knows of a node.
     #[derive(Clone, Copy)]
     struct Reached {
@@ -277,6 +292,10 @@ fn undominated(edges: &[Edge], potential: Vec<i64>) -> Result<Vec<Edge>, TooLarg
             }
             here.settled = true;
             let real = within_limit(key - potential[node as usize] + base)?;
+            // Whatever is reached through a node before the source is needless, unless a way around is longer.
+            if real < 0 && effort == Effort::Quick {
+                continue;
+            }
             let least = if node == source { i64::MAX } else { here.between.min(real) };
             for &(to, reduced) in outgoing.of(node) {
                 let candidate = key + reduced;

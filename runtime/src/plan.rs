@@ -1,6 +1,6 @@
 //! A proven network, compiled for execution.
 
-use kirk_network::dispatchable::dispatchable;
+use kirk_network::dispatchable::{dispatchable, dispatchable_quickly};
 use kirk_network::merge::merge;
 use kirk_network::reduce::{Progress, ReduceError, Reduction, reduce, reduce_rest};
 use kirk_network::stnu::TooLarge;
@@ -33,7 +33,7 @@ impl Plan {
     /// Merges, reduces, proves and compiles a network.
     pub fn new(network: &Network) -> Result<Plan, NoPlan> {
         let merged = merge(network).network;
-        match compile(reduce(&merged))? {
+        match compile(reduce(&merged), LARGEST_MINIMAL)? {
             Some((reduction, net)) => Ok(Plan { network: merged, reduction, net }),
             None => match check(network)? {
                 Verdict::Uncontrollable(conflict) => Err(NoPlan::Uncontrollable(conflict)),
@@ -49,14 +49,24 @@ impl Plan {
 
     /// The plan for what is left of an execution, `None` if there is none (possible in delayed chains only).
     pub(crate) fn rest(&self, progress: &Progress) -> Option<(Reduction, Dispatchable)> {
-        compile(reduce_rest(&self.network, progress)).ok().flatten()
+        compile(reduce_rest(&self.network, progress), 0).ok().flatten()
     }
 }
 
-fn compile(reduction: Result<Reduction, ReduceError>) -> Result<Option<(Reduction, Dispatchable)>, TooLarge> {
+/// Networks of more nodes are not worth the minimal form: that takes longer than it saves.
+const LARGEST_MINIMAL: u32 = 2_000;
+
+fn compile(
+    reduction: Result<Reduction, ReduceError>,
+    largest_minimal: u32,
+) -> Result<Option<(Reduction, Dispatchable)>, TooLarge> {
     match reduction {
         Err(ReduceError::TooLarge) => Err(TooLarge),
         Err(ReduceError::Never(_)) => Ok(None),
-        Ok(reduction) => Ok(dispatchable(&reduction.stnu)?.map(|net| (reduction, net))),
+        Ok(reduction) => {
+            let minimal = reduction.stnu.nodes <= largest_minimal;
+            let make = if minimal { dispatchable } else { dispatchable_quickly };
+            Ok(make(&reduction.stnu)?.map(|net| (reduction, net)))
+        }
     }
 }

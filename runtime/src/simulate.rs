@@ -63,6 +63,14 @@ pub fn simulate(plan: &Plan, program: &str, simulation: &Simulation) -> Result<E
             _ => timeout,
         };
     }
+    // News that was asked for is heard even if nothing is left to do with it.
+    while let Some(Reverse((time, event))) = news.pop() {
+        if simulation.observations.contains(&(event, time)) {
+            dispatcher.handle_observation(time, event);
+            let late = dispatcher.known(event).fixed.is_some_and(|(fixed, _)| fixed > now);
+            now = if late { time } else { now };
+        }
+    }
     let mut execution = record(&dispatcher, program, now, simulation.internal, &truth);
     execution.seed = Some(simulation.seed);
     Ok(execution)

@@ -7,7 +7,9 @@ use serde_json::value::RawValue;
 
 use crate::controllability::Wait;
 use crate::dispatchable::Dispatchable;
-use crate::model::{ContingentLink, Delay, Event, EventId, ModelError, Name, Network, Requirement};
+use crate::model::{
+    ContingentLink, Delay, Event, EventId, ModelError, Name, Network, Requirement, normal_name,
+};
 use crate::stnu::{Edge, Link, NONE};
 use crate::time::{Bound, Duration};
 
@@ -25,12 +27,16 @@ pub struct ReadProblem {
 
 /// Reads a network file, or lists everything that is wrong with it.
 pub fn read(text: &str) -> Result<Network, Vec<ReadProblem>> {
-    let file: FileText = serde_json::from_str(text).map_err(|error| vec![locate(text, &error)])?;
+    let Fields(fields) = serde_json::from_str(text).map_err(|error| vec![locate(text, &error)])?;
     let mut reader = Reader { text, problems: Vec::new() };
+    let file = reader.file(fields);
     let network = reader.network(&file);
     match network {
         Some(network) if reader.problems.is_empty() => Ok(network),
-        _ => Err(reader.problems),
+        _ => {
+            reader.problems.sort_by_key(|problem| problem.offset);
+            Err(reader.problems)
+        }
     }
 }
 
@@ -41,23 +47,41 @@ pub fn write(network: &Network) -> String {
         .unwrap_or_else(|error| unreachable!("a network has only strings and numbers: {error}"))
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+/// The fields of the file, not yet looked into.
+#[derive(Default)]
 struct FileText<'a> {
-    #[serde(borrow)]
-    format: &'a RawValue,
-    #[serde(default)]
-    name: String,
-    #[serde(borrow, default)]
+    format: Option<&'a RawValue>,
+    name: Option<&'a RawValue>,
     time_unit: Option<&'a RawValue>,
-    #[serde(borrow)]
-    origin: &'a RawValue,
-    #[serde(borrow)]
-    events: Vec<&'a RawValue>,
-    #[serde(borrow, default)]
-    requirements: Vec<&'a RawValue>,
-    #[serde(borrow, default)]
-    contingents: Vec<&'a RawValue>,
+    origin: Option<&'a RawValue>,
+    events: Option<&'a RawValue>,
+    requirements: Option<&'a RawValue>,
+    contingents: Option<&'a RawValue>,
+}
+
+/// A JSON object, field by field, in order, nothing lost.
+struct Fields<'a>(Vec<(String, &'a RawValue)>);
+
+impl<'de> Deserialize<'de> for Fields<'de> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Fields<'de>, D::Error> {
+        struct FieldsVisitor;
+        impl<'de> Visitor<'de> for FieldsVisitor {
+            type Value = Fields<'de>;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                write!(f, "a network: a JSON object with `format`, `origin` and `events`")
+            }
+
+            fn visit_map<M: MapAccess<'de>>(self, mut map: M) -> Result<Fields<'de>, M::Error> {
+                let mut fields = Vec::new();
+                while let Some(field) = map.next_entry()? {
+                    fields.push(field);
+                }
+                Ok(Fields(fields))
+            }
+        }
+        deserializer.deserialize_map(FieldsVisitor)
+    }
 }
 
 struct EventText {
@@ -149,35 +173,95 @@ struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
+    fn file(&mut self, fields: Vec<(String, &'a RawValue)>) -> FileText<'a> {
+        let mut file = FileText::default();
+        for (name, raw) in fields {
+            let slot = match name.as_str() {
+                "format" => &mut file.format,
+                "name" => &mut file.name,
+                "time_unit" => &mut file.time_unit,
+                "origin" => &mut file.origin,
+                "events" => &mut file.events,
+                "requirements" => &mut file.requirements,
+                "contingents" => &mut file.contingents,
+                _ => {
+                    let known =
+                        "`format`, `name`, `time_unit`, `origin`, `events`, `requirements` and `contingents`";
+                    self.problem(raw, format!("a network has no field `{name}`; it has {known}"));
+                    continue;
+                }
+            };
+            if slot.replace(raw).is_some() {
+                self.problem(raw, format!("the field `{name}` is there twice"));
+            }
+        }
+        for (name, there) in [
+            ("format", file.format.is_some()),
+            ("origin", file.origin.is_some()),
+            ("events", file.events.is_some()),
+        ] {
+            if !there {
+                self.problems
+                    .push(ReadProblem { offset: 0, message: format!("the field `{name}` is missing") });
+            }
+        }
+        file
+    }
+
+    /// The elements of a field that is a list; none if the field is not there.
+    fn list(&mut self, name: &str, field: Option<&'a RawValue>) -> Vec<&'a RawValue> {
+        field.and_then(|raw| self.element(name, raw)).unwrap_or_default()
+    }
+
+    /// An element that has to be an object.
+    fn object<T: Deserialize<'a>>(&mut self, name: &str, raw: &'a RawValue) -> Option<T> {
+        if raw.get().starts_with('{') {
+            return self.element(name, raw);
+        }
+        self.problem(raw, format!("{name}: expected an object, {{\"from\": ..., \"to\": ..., ...}}"));
+        None
+    }
+
     fn network(&mut self, file: &FileText<'a>) -> Option<Network> {
-        if let Some(format) = self.element::<String>("format", file.format)
+        if let Some(raw) = file.format
+            && let Some(format) = self.element::<String>("format", raw)
             && format != FORMAT
         {
-            self.problem(file.format, format!("the format is `{format}`; this kirk reads `{FORMAT}`"));
+            self.problem(raw, format!("the format is `{format}`; this kirk reads `{FORMAT}`"));
         }
+        let name: String = file.name.and_then(|raw| self.element("name", raw)).unwrap_or_default();
         if let Some(raw) = file.time_unit
             && let Some(unit) = self.element::<String>("time_unit", raw)
             && unit != "s"
         {
             self.problem(raw, format!("the time unit is `{unit}`; kirk networks are in seconds, `s`"));
         }
+        let event_list = self.list("events", file.events);
+        let requirement_list = self.list("requirements", file.requirements);
+        let contingent_list = self.list("contingents", file.contingents);
         let mut events = Vec::new();
         let mut index: std::collections::BTreeMap<String, EventId> = std::collections::BTreeMap::new();
-        for (at, raw) in file.events.iter().enumerate() {
+        for (at, &raw) in event_list.iter().enumerate() {
             let Some(event) = self.element::<EventText>(&format!("events[{at}]"), raw) else { continue };
             let id = EventId(events.len() as u32);
             let mut names = vec![event.id];
             names.extend(event.names.into_iter().filter(|name| *name != names[0]).collect::<Vec<_>>());
             for name in &names {
-                if index.insert(name.clone(), id).is_some() {
-                    self.problem(raw, format!("events[{at}]: the name `{name}` is used already"));
+                if name.is_empty() {
+                    self.problem(raw, format!("events[{at}]: an event needs a name"));
+                }
+                if index.insert(normal_name(name), id).is_some() {
+                    self.problem(
+                        raw,
+                        format!("events[{at}]: the name `{name}` is used already (case does not count)"),
+                    );
                 }
             }
             let names = names.into_iter().map(|text| Name { text, internal: false }).collect();
             events.push(Event { names });
         }
         let find = |reader: &mut Reader<'a>, raw: &'a RawValue, element: &str, name: &str| {
-            let found = index.get(name).copied();
+            let found = index.get(&normal_name(name)).copied();
             if found.is_none() {
                 let near = nearest(name, index.keys());
                 let help = near.map_or(String::new(), |near| format!("; did you mean `{near}`?"));
@@ -185,12 +269,14 @@ impl<'a> Reader<'a> {
             }
             found
         };
-        let origin = self.element::<String>("origin", file.origin);
-        let origin = origin.and_then(|name| find(self, file.origin, "origin", &name));
+        let origin = file.origin.and_then(|raw| {
+            let name = self.element::<String>("origin", raw)?;
+            find(self, raw, "origin", &name)
+        });
         let mut requirements = Vec::new();
-        for (at, raw) in file.requirements.iter().enumerate() {
+        for (at, &raw) in requirement_list.iter().enumerate() {
             let element = format!("requirements[{at}]");
-            let Some(requirement) = self.element::<RequirementText>(&element, raw) else { continue };
+            let Some(requirement) = self.object::<RequirementText>(&element, raw) else { continue };
             let from = find(self, raw, &element, &requirement.from);
             let to = find(self, raw, &element, &requirement.to);
             let bound = |seconds: Option<Seconds>| seconds.map_or(Bound::Infinite, |s| Bound::Finite(s.0));
@@ -200,9 +286,9 @@ impl<'a> Reader<'a> {
             }
         }
         let mut contingents = Vec::new();
-        for (at, raw) in file.contingents.iter().enumerate() {
+        for (at, &raw) in contingent_list.iter().enumerate() {
             let element = format!("contingents[{at}]");
-            let Some(link) = self.element::<ContingentText>(&element, raw) else { continue };
+            let Some(link) = self.object::<ContingentText>(&element, raw) else { continue };
             let from = find(self, raw, &element, &link.from);
             let to = find(self, raw, &element, &link.to);
             let delay = link.delay.map_or(Delay::NONE, |(min, max)| Delay {
@@ -217,17 +303,17 @@ impl<'a> Reader<'a> {
         if !self.problems.is_empty() {
             return None;
         }
-        match Network::new(file.name.clone(), origin?, events, requirements, contingents) {
+        match Network::new(name, origin?, events, requirements, contingents) {
             Ok(network) => Some(network),
             Err(errors) => {
                 for error in errors {
                     let raw = match &error {
-                        ModelError::RequirementReversed { index, .. } => file.requirements[*index],
+                        ModelError::RequirementReversed { index, .. } => requirement_list[*index],
                         ModelError::LinkBounds { index, .. }
                         | ModelError::DelayBounds { index, .. }
                         | ModelError::ContingentOrigin { index }
-                        | ModelError::TwoLinksEndThere { index, .. } => file.contingents[*index],
-                        _ => file.origin,
+                        | ModelError::TwoLinksEndThere { index, .. } => contingent_list[*index],
+                        _ => file.origin?,
                     };
                     self.problem(raw, error.to_string());
                 }

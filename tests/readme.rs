@@ -15,7 +15,7 @@ fn the_commands_of_the_readme_print_what_it_says() {
         let (command, shown) = block.split_once('\n').unwrap();
         let Some(arguments) = command.strip_prefix("$ kirk ") else { continue };
         let output = kirk(&arguments.split_whitespace().collect::<Vec<_>>());
-        let printed = stdout(&output) + &stderr(&output);
+        let printed = stderr(&output) + &stdout(&output);
         assert_eq!(printed.trim_end(), shown.trim_end(), "{command}");
         tried += 1;
     }

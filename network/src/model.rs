@@ -260,8 +260,7 @@ impl Network {
 
 /// The lower-case form of an event name: `+SHOWER::START+` and `Shower:Start` are `shower:start`, `+Z+` is `z`.
 pub fn normal_name(name: &str) -> String {
-    let bare =
-        name.strip_prefix('+').and_then(|rest| rest.strip_suffix('+')).filter(|bare| !bare.is_empty());
+    let bare = name.strip_prefix('+').and_then(|rest| rest.strip_suffix('+')).filter(|bare| !bare.is_empty());
     match bare {
         Some(bare) => bare.replacen("::", ":", 1).to_lowercase(),
         None => name.to_lowercase(),

@@ -5,8 +5,11 @@ use std::io;
 
 use kirk_compiler::{Code, Diagnostic, Severity, Source, Span};
 use kirk_network::json::{ReadProblem, Seconds, locate};
-use kirk_network::{Duration, EventId, Network, Time};
-use kirk_runtime::{Impossible, NoPlan, Outcome, Plan, Simulation, Strategy, Temper, simulate};
+use kirk_network::{Conflict, Duration, EventId, Network, Time};
+use kirk_runtime::execution::FORMAT;
+use kirk_runtime::{
+    Execution, Failure, Impossible, NoPlan, Outcome, Plan, Simulation, Strategy, Temper, simulate,
+};
 use serde::Deserialize;
 use serde::de::{Deserializer, MapAccess, Visitor};
 
@@ -48,7 +51,12 @@ pub(crate) fn run(arguments: &Run, common: &Common) -> io::Result<Status> {
     Reporter::new(&input.sources).show(&shown, common)?;
     let plan = match plan {
         None => return Ok(Status::Wrong),
-        Some(Err(_)) => return Ok(Status::No),
+        Some(Err(found)) => {
+            if arguments.format == TextOrJson::Json {
+                print(&line(&not_executed(&found, &input.program(&arguments.selection)))?)?;
+            }
+            return Ok(Status::No);
+        }
         Some(Ok(plan)) => plan,
     };
     if common.verbose {
@@ -86,6 +94,27 @@ pub(crate) fn run(arguments: &Run, common: &Common) -> io::Result<Status> {
         TextOrJson::Text => print(&timetable(&execution))?,
     }
     Ok(if execution.outcome == Outcome::Completed { Status::Yes } else { Status::No })
+}
+
+/// The record of a mission that was not started because it cannot be promised.
+fn not_executed(conflict: &Conflict, program: &str) -> Execution {
+    let missing = Duration::from_micros(-conflict.total.as_micros());
+    Execution {
+        format: FORMAT.to_string(),
+        program: program.to_string(),
+        outcome: Outcome::Failed,
+        failure: Some(Failure {
+            event: program.to_string(),
+            time: Seconds(Duration::ZERO),
+            reason: "not-controllable".to_string(),
+            detail: format!(
+                "there is no strategy that works in every case: in the worst case {missing} s are missing"
+            ),
+        }),
+        makespan: Seconds(Duration::ZERO),
+        seed: None,
+        rows: Vec::new(),
+    }
 }
 
 /// The observations given, and what is wrong with them. Each option is a source of its own to point into.

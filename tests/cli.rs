@@ -176,6 +176,30 @@ fn json_goes_to_standard_output_alone_one_document_per_file() {
 }
 
 #[test]
+fn a_mission_that_cannot_be_promised_is_a_failed_execution_in_json() {
+    let output = kirk(&["run", "examples/rmpl/too-late.rmpl", "--simulate", "--format", "json"]);
+    assert_eq!(output.status.code(), Some(1));
+    let record: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(record["outcome"], "failed");
+    assert_eq!(record["failure"]["reason"], "not-controllable");
+    assert!(stderr(&output).contains("K0601"), "{}", stderr(&output));
+}
+
+#[test]
+fn news_after_the_end_is_heard_all_the_same() {
+    let arguments = ["run", "examples/rmpl/collect-sample.rmpl", "--simulate", "--format", "json"];
+    let output = kirk(&[&arguments[..], &["--observe", "collect-science-sample:end@45"]].concat());
+    let record: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let rows = record["rows"].as_array().unwrap();
+    let row = rows.iter().find(|row| row["event"] == "collect-science-sample:end").unwrap();
+    assert_eq!(
+        (&row["how"], row["time"].as_f64(), row["observed"].as_f64()),
+        (&"imagined".into(), Some(35.0), Some(45.0))
+    );
+    assert_eq!(row["happened"], serde_json::json!([30, 30]));
+}
+
+#[test]
 fn a_compiled_network_is_input_again() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("robot.json");

@@ -47,7 +47,7 @@ pub struct Failure {
     pub event: String,
     /// When it failed.
     pub time: Seconds,
-    /// One word: `missed-window`, `broken-model`.
+    /// One word: `missed-window`, `not-controllable`.
     pub reason: String,
     /// A sentence for people.
     pub detail: String,

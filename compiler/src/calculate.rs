@@ -77,6 +77,8 @@ impl Operator {
     pub fn takes(self) -> (usize, usize) {
         match self {
             Operator::Increment | Operator::Decrement => (1, 1),
+            // One number alone is a slip: `(min 5)` is meant to be `(minutes 5)`.
+            Operator::Minimum | Operator::Maximum => (2, usize::MAX),
             Operator::Modulo | Operator::Divide => (2, if self == Operator::Modulo { 2 } else { usize::MAX }),
             _ => (1, usize::MAX),
         }

@@ -119,7 +119,10 @@ fn list(form: &Form, what: &str, problems: &mut Problems) -> AmountKind {
                 Diagnostic::error(Code::UnknownUnit, form.span, message)
                     .primary(format!("{what} was expected"))
                     .help("The units are `(seconds 90)`, `(minutes 5)`, `(hours 1.5)` and `(days 1)`; arithmetic is `+`, `-`, `*`, `/`, `1+`, `1-`, `min`, `max` and `mod`.")
-                    .maybe_help(did_you_mean(word, near)),
+                    .maybe_help(match word {
+                        "mins" | "m" => Some("Did you mean `minutes`?".to_string()),
+                        _ => did_you_mean(word, near),
+                    }),
             );
             return AmountKind::Error;
         }
@@ -136,7 +139,8 @@ fn list(form: &Form, what: &str, problems: &mut Problems) -> AmountKind {
         problems.push(
             Diagnostic::error(Code::WrongShape, at, message)
                 .primary("in this calculation")
-                .help(format!("Write `{example}`.")),
+                .help(format!("Write `{example}`."))
+                .maybe_help((word == "min").then(|| "Minutes are written `(minutes 5)`.".to_string())),
         );
         return AmountKind::Error;
     }

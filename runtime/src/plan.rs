@@ -54,7 +54,7 @@ impl Plan {
 }
 
 /// Networks of more nodes are not worth the minimal form: that takes longer than it saves.
-const LARGEST_MINIMAL: u32 = 2_000;
+const LARGEST_MINIMAL: u32 = 3_000;
 
 fn compile(
     reduction: Result<Reduction, ReduceError>,

@@ -13,7 +13,7 @@ use crate::args::{Common, Compile, Stage, StageFormat};
 use crate::check::{judge, too_large};
 use crate::input::{Input, load_all};
 use crate::json::line;
-use crate::output::{Status, complain, print};
+use crate::output::{Status, complain, deliver};
 use crate::report::Reporter;
 
 pub(crate) fn compile(arguments: &Compile, common: &Common) -> io::Result<Status> {
@@ -29,16 +29,7 @@ pub(crate) fn compile(arguments: &Compile, common: &Common) -> io::Result<Status
             return Ok(Status::Wrong);
         }
     };
-    match &arguments.output {
-        None => print(&text)?,
-        Some(file) => {
-            if let Err(error) = std::fs::write(file, &text) {
-                complain(&format!("cannot write `{file}`: {error}"));
-                return Ok(Status::Wrong);
-            }
-        }
-    }
-    Ok(Status::Yes)
+    deliver(&text, arguments.output.as_deref())
 }
 
 /// Why nothing was emitted.

@@ -34,48 +34,36 @@ pub(crate) fn diagnostic(conflict: &Conflict, network: &Network, input: &Input) 
 }
 
 fn sentence(share: &Share, network: &Network) -> String {
-    let requirement = |index: usize| network.requirements()[index];
-    let link = |index: usize| network.contingents()[index];
+    let bound = share.bound(network);
+    let ends = |index: usize| {
+        let requirement = network.requirements()[index];
+        (network.label(requirement.from), network.label(requirement.to))
+    };
+    let link = |index: usize| network.label(network.contingents()[index].to);
     let text = match share.part {
         Part::RequirementUpper(index) => {
-            let (from, to) = (network.label(requirement(index).from), network.label(requirement(index).to));
-            format!("requirements[{index}]: `{to}` at most {} s after `{from}`", share.bound(network))
+            let (from, to) = ends(index);
+            format!("requirements[{index}]: `{to}` at most {bound} s after `{from}`")
         }
         Part::RequirementLower(index) => {
-            let (from, to) = (network.label(requirement(index).from), network.label(requirement(index).to));
-            format!("requirements[{index}]: `{to}` at least {} s after `{from}`", share.bound(network))
+            let (from, to) = ends(index);
+            format!("requirements[{index}]: `{to}` at least {bound} s after `{from}`")
         }
         Part::LinkLower(index) => {
-            format!(
-                "contingents[{index}]: `{}` may happen after only {} s",
-                network.label(link(index).to),
-                share.bound(network)
-            )
+            format!("contingents[{index}]: `{}` may happen after only {bound} s", link(index))
         }
         Part::LinkUpper(index) => {
-            format!(
-                "contingents[{index}]: `{}` may happen after as much as {} s",
-                network.label(link(index).to),
-                share.bound(network)
-            )
+            format!("contingents[{index}]: `{}` may happen after as much as {bound} s", link(index))
         }
         Part::DelayMin(index) => {
-            format!(
-                "contingents[{index}]: news of `{}` may be only {} s late",
-                network.label(link(index).to),
-                share.bound(network)
-            )
+            format!("contingents[{index}]: news of `{}` may be only {bound} s late", link(index))
         }
         Part::DelayMax(index) => {
-            format!(
-                "contingents[{index}]: news of `{}` may be {} s late",
-                network.label(link(index).to),
-                share.bound(network)
-            )
+            format!("contingents[{index}]: news of `{}` may be {bound} s late", link(index))
         }
         Part::AfterOrigin => "nothing happens before the origin".to_string(),
         Part::Join(index) => {
-            let (from, to) = (network.label(requirement(index).from), network.label(requirement(index).to));
+            let (from, to) = ends(index);
             format!("requirements[{index}]: `{from}` and `{to}` are one event")
         }
     };

@@ -9,7 +9,7 @@ use kirk_network::generate::{
 use kirk_network::{Network, json, rmpl};
 
 use crate::args::{BoundsKind, Common, Family, Generate, JsonOrRmpl, LinkKind, Size};
-use crate::output::{Status, complain, print, remark};
+use crate::output::{Status, complain, deliver, remark};
 
 pub(crate) fn generate(arguments: &Generate, common: &Common) -> io::Result<Status> {
     let size = arguments.family.size();
@@ -49,16 +49,7 @@ pub(crate) fn generate(arguments: &Generate, common: &Common) -> io::Result<Stat
             kirk_compiler::format(&program).unwrap_or(program)
         }
     };
-    match &size.output {
-        None => print(&text)?,
-        Some(file) => {
-            if let Err(error) = std::fs::write(file, &text) {
-                complain(&format!("cannot write `{file}`: {error}"));
-                return Ok(Status::Wrong);
-            }
-        }
-    }
-    Ok(Status::Yes)
+    deliver(&text, size.output.as_deref())
 }
 
 fn make(family: &Family, seed: u64) -> Result<Network, GenerateError> {

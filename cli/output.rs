@@ -21,6 +21,19 @@ pub(crate) fn print(text: &str) -> io::Result<()> {
     out.flush()
 }
 
+/// Prints a text to standard output, or writes it to a file if one is named.
+pub(crate) fn deliver(text: &str, file: Option<&str>) -> io::Result<Status> {
+    match file.map(|file| (file, std::fs::write(file, text))) {
+        None => print(text)?,
+        Some((_, Ok(()))) => {}
+        Some((file, Err(error))) => {
+            complain(&format!("cannot write `{file}`: {error}"));
+            return Ok(Status::Wrong);
+        }
+    }
+    Ok(Status::Yes)
+}
+
 /// Prints a line to standard output.
 pub(crate) fn print_line(text: &str) -> io::Result<()> {
     print(&format!("{text}\n"))

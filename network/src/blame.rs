@@ -6,7 +6,7 @@ use crate::conflict::{Conflict, Part, Share};
 use crate::controllability::{Cycle, Step};
 use crate::model::{EventId, Network};
 use crate::reduce::{Reduction, Source};
-use crate::time::{Bound, Duration};
+use crate::time::Duration;
 use crate::trees::{Trees, link_index};
 
 impl Reduction {
@@ -147,14 +147,9 @@ impl Tally<'_> {
 
 /// What one use of a part contributes, with the sign given at [`Part`].
 fn signed_bound(network: &Network, part: Part) -> i64 {
-    let finite = |bound: Bound| bound.finite().unwrap_or_default().as_micros();
+    let bound = part.bound(network).as_micros();
     match part {
-        Part::RequirementUpper(index) => finite(network.requirements()[index].upper),
-        Part::RequirementLower(index) => -finite(network.requirements()[index].lower),
-        Part::LinkLower(index) => network.contingents()[index].lower.as_micros(),
-        Part::LinkUpper(index) => -network.contingents()[index].upper.as_micros(),
-        Part::DelayMin(index) => network.contingents()[index].delay.min.as_micros(),
-        Part::DelayMax(index) => -finite(network.contingents()[index].delay.max),
-        Part::AfterOrigin | Part::Join(_) => 0,
+        Part::RequirementLower(_) | Part::LinkUpper(_) | Part::DelayMax(_) => -bound,
+        _ => bound,
     }
 }

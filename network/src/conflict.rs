@@ -51,10 +51,17 @@ pub enum Part {
 }
 
 impl Share {
-    /// The bound itself, without sign: what the network says there. Zero for what has no bound.
+    /// The bound itself, without sign: what the network says there.
     pub fn bound(&self, network: &Network) -> Duration {
+        self.part.bound(network)
+    }
+}
+
+impl Part {
+    /// The bound itself, without sign: what the network says there. Zero for what has no bound.
+    pub fn bound(self, network: &Network) -> Duration {
         let finite = |bound: Bound| bound.finite().unwrap_or_default();
-        match self.part {
+        match self {
             Part::RequirementUpper(index) => finite(network.requirements()[index].upper),
             Part::RequirementLower(index) => finite(network.requirements()[index].lower),
             Part::LinkLower(index) => network.contingents()[index].lower,

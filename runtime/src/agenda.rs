@@ -24,13 +24,17 @@ pub(crate) struct Agenda {
     waits_for: Rows,
     waits_of: Rows,
     nodes: Vec<NodeState>,
-    /// Executable nodes that nothing holds back but time: (time, node). Entries go stale and are then skipped.
+    /// Executable nodes that nothing holds back but time: (due less lead, node). Entries go stale and are then skipped.
     ready: BinaryHeap<Reverse<(i64, u32)>>,
 }
 
 #[derive(Clone, Debug)]
 struct NodeState {
     executed: Option<i64>,
+    /// It is in somebody's hands: not to be offered again.
+    taken: bool,
+    /// How long before it is due it is offered.
+    lead: i64,
     lower: i64,
     upper: i64,
     /// How many nodes must be executed before this one.
@@ -46,10 +50,18 @@ struct ActiveWait {
 }
 
 impl Agenda {
-    /// Starts with the origin executed at time 0.
-    pub(crate) fn new(net: &Dispatchable) -> Agenda {
+    /// Starts with the origin executed at time 0. Every node has a lead, by which it is offered before it is due.
+    pub(crate) fn new(net: &Dispatchable, lead: impl Fn(u32) -> i64) -> Agenda {
         let count = net.nodes as usize;
-        let mut nodes = vec![NodeState { executed: None, lower: 0, upper: i64::MAX, held_by: 0 }; count];
+        let node = |node| NodeState {
+            executed: None,
+            taken: false,
+            lead: lead(node),
+            lower: 0,
+            upper: i64::MAX,
+            held_by: 0,
+        };
+        let mut nodes: Vec<NodeState> = (0..net.nodes).map(node).collect();
         for edge in net.edges.iter().filter(|edge| net.holds(edge)) {
             nodes[edge.from as usize].held_by += 1;
         }
@@ -94,15 +106,25 @@ impl Agenda {
         self.nodes[node as usize].upper
     }
 
-    /// The executable node to execute next and its time: the earliest there is.
+    /// The executable node to take in hand next and when that is: the earliest there is.
     pub(crate) fn next(&mut self) -> Option<(i64, u32)> {
         while let Some(&Reverse((time, node))) = self.ready.peek() {
-            if self.nodes[node as usize].executed.is_none() && self.earliest(node) == Some(time) {
+            if self.action(node) == Some(time) {
                 return Some((time, node));
             }
             self.ready.pop();
         }
         None
+    }
+
+    /// When a node that nothing holds back is due.
+    pub(crate) fn due(&self, node: u32) -> i64 {
+        self.earliest(node).unwrap_or(i64::MAX)
+    }
+
+    /// Somebody has a node in hand: it is not offered again, and executed when that is known.
+    pub(crate) fn take(&mut self, node: u32) {
+        self.nodes[node as usize].taken = true;
     }
 
     /// Executes a node, or says that a contingent node has happened. Returns the links this starts.
@@ -160,9 +182,15 @@ impl Agenda {
         Some(waits.fold(state.lower, i64::max))
     }
 
+    /// When to take a node in hand.
+    fn action(&self, node: u32) -> Option<i64> {
+        let state = &self.nodes[node as usize];
+        if state.taken { None } else { self.earliest(node).map(|time| time.saturating_sub(state.lead)) }
+    }
+
     fn offer(&mut self, node: u32) {
         if self.ending[node as usize] == NONE
-            && let Some(time) = self.earliest(node)
+            && let Some(time) = self.action(node)
         {
             self.ready.push(Reverse((time, node)));
         }

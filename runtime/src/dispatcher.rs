@@ -4,22 +4,32 @@
 //! the time of [`Dispatcher::poll_timeout`] has come (earlier or again is harmless), each with the present time, which
 //! never goes back; then take what is to be done from [`Dispatcher::poll_dispatch`].
 //!
+//! Events that somebody else executes (a driver) are *in flight* from their dispatch until
+//! [`Dispatcher::handle_executed`] confirms them: what must follow them waits for that.
+//!
+//! Real clocks are late. An event executed no later than [`Settings::lateness`] after it was due is recorded at the time
+//! it was due, so that lateness does not add up through the plan (N. Muscettola, P. Morris, B. Pell, B. Smith, *Issues in
+//! temporal reasoning for autonomous control systems*, 1998, section 3); one that is later is recorded as late as it is,
+//! if its window allows.
+//!
 //! News is mapped as in sections 5.2.2 and appendix C of the thesis. News within the window of the plan is taken at
 //! once. Early news is *buffered* to the start of the window, missing news is *imagined* at its end. With
 //! [`Strategy::Optimistic`], news that says more than the plan assumed replaces the event by the interval in which it
-//! must have happened, and what is left is planned anew. The buffering execution satisfies the new plan too, so there
-//! always is one; it only adds freedom.
+//! must have happened, and what is left is planned anew: [`Dispatcher::poll_rebuild`] hands out the work, which may take
+//! its time elsewhere. The buffering execution satisfies the new plan too, so there always is one; it only adds freedom,
+//! and until it is there the old plan stands.
 
 use std::collections::VecDeque;
 
-use kirk_network::reduce::{Progress, Reduction};
+use kirk_network::reduce::Reduction;
 use kirk_network::stnu::{Link, Rows};
-use kirk_network::{Duration, EventId, Network, Time};
+use kirk_network::{Dispatchable, Duration, EventId, Network, Time};
 
 use crate::agenda::Agenda;
 use crate::execution::How;
 use crate::knowledge::{Knowledge, Known, heard_now};
 use crate::plan::Plan;
+use crate::rebuild::{Rebuild, Rebuilt};
 
 /// What to do with news that says more than the plan assumed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -31,6 +41,26 @@ pub enum Strategy {
     Optimistic,
 }
 
+/// How an execution treats news and time.
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub struct Settings {
+    /// What to do with news that says more than the plan assumed.
+    pub strategy: Strategy,
+    /// The executable events that count as executed only when [`Dispatcher::handle_executed`] says so.
+    pub confirmed: Vec<EventId>,
+    /// How long before they are due those are dispatched.
+    pub lead: Duration,
+    /// Up to how late an event is recorded as executed when it was due.
+    pub lateness: Duration,
+}
+
+impl Settings {
+    /// Nothing is ever late, and every dispatch is its own execution.
+    pub fn of(strategy: Strategy) -> Settings {
+        Settings { strategy, ..Settings::default() }
+    }
+}
+
 /// An executable event to be executed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Dispatch {
@@ -38,6 +68,14 @@ pub struct Dispatch {
     pub event: EventId,
     /// When it is due.
     pub time: Time,
+}
+
+/// A dispatched event that nobody has confirmed yet.
+#[derive(Clone, Copy, Debug)]
+struct InFlight {
+    event: EventId,
+    node: u32,
+    due: i64,
 }
 
 /// What was done with news.
@@ -73,7 +111,9 @@ pub struct Missed {
 #[derive(Clone, Debug)]
 pub struct Dispatcher {
     plan: Plan,
-    strategy: Strategy,
+    settings: Settings,
+    /// For each event: is it to be confirmed?
+    confirmed: Vec<bool>,
     reduction: Reduction,
     agenda: Agenda,
     /// The links that have started and whose contingent node has not happened: (window start, window end, link).
@@ -84,27 +124,44 @@ pub struct Dispatcher {
     /// For every node of the plan the events placed there.
     placed_at: Rows,
     now: i64,
+    in_flight: Vec<InFlight>,
     dispatches: VecDeque<Dispatch>,
+    fixed: VecDeque<EventId>,
+    /// News came that is not planned with yet.
+    stale: bool,
+    /// Changes whenever anything happens.
+    version: u64,
     missed: Option<Missed>,
 }
 
 impl Dispatcher {
-    /// Starts an execution: the origin is dispatched at time 0.
-    pub fn new(plan: Plan, strategy: Strategy) -> Dispatcher {
+    /// Starts an execution: the origin is dispatched, and executed, at time 0.
+    pub fn new(plan: Plan, settings: Settings) -> Dispatcher {
+        let mut confirmed = vec![false; plan.network().events().len()];
+        for event in &settings.confirmed {
+            confirmed[event.index()] = true;
+        }
         let mut dispatcher = Dispatcher {
-            strategy,
+            agenda: agenda(&plan.reduction, &plan.net, &confirmed, settings.lead),
+            settings,
+            confirmed,
             reduction: plan.reduction.clone(),
-            agenda: Agenda::new(&plan.net),
             active: Vec::new(),
             knowledge: Knowledge::new(plan.network()),
             unplaced: Vec::new(),
             placed_at: Rows::new(0, std::iter::empty()),
             now: 0,
+            in_flight: Vec::new(),
             dispatches: VecDeque::new(),
+            fixed: VecDeque::new(),
+            stale: false,
+            version: 0,
             missed: None,
             plan,
         };
-        dispatcher.dispatched(dispatcher.plan.network().origin(), 0);
+        let origin = dispatcher.network().origin();
+        dispatcher.dispatches.push_back(Dispatch { event: origin, time: Time::ZERO });
+        dispatcher.fix(origin, 0, How::Dispatched);
         dispatcher.activate_from_origin();
         dispatcher
     }
@@ -124,66 +181,141 @@ impl Dispatcher {
         self.missed
     }
 
-    /// Takes news of an event that arrives now.
+    /// Takes news of an event that arrives now. News that is outside of what the model allows by no more than the lead and
+    /// the lateness of dispatches counts as if it had come when it may.
     pub fn handle_observation(&mut self, now: Time, event: EventId) -> Reception {
         self.now = self.now.max(now.as_micros());
-        let now = self.now;
         let Some(link) = self.network().link_of(event) else { return Reception::NotContingent };
         if self.known(event).observed.is_some() {
             return Reception::Repeated;
         }
         let link = self.network().contingents()[link];
-        let evidence = heard_now(&link, now);
-        let before = self.happened(event);
-        let possible =
-            before.is_some_and(|(low, high)| low.max(evidence.0) <= high.min(evidence.1) && low <= now);
-        if !possible {
-            let after =
-                |time: i64, delay: Duration| Time::from_micros(time.saturating_add(delay.as_micros()));
-            return Reception::Impossible {
-                earliest: before.map(|(low, _)| after(low, link.delay.min)),
-                latest: before.zip(link.delay.max.finite()).map(|((_, high), max)| after(high, max)),
-            };
+        let Some(before) = self.happened(event) else {
+            return Reception::Impossible { earliest: None, latest: None };
+        };
+        let earliest = before.0.saturating_add(link.delay.min.as_micros());
+        let latest = link.delay.max.finite().map(|max| before.1.saturating_add(max.as_micros()));
+        let nearest = self.now.max(earliest).min(latest.unwrap_or(i64::MAX));
+        let slack = self.settings.lead.as_micros().saturating_add(self.settings.lateness.as_micros());
+        let heard = if (nearest - self.now).abs() <= slack { nearest } else { self.now };
+        let evidence = heard_now(&link, heard);
+        if before.0.max(evidence.0) > before.1.min(evidence.1) || before.0 > heard {
+            let latest = latest.map(Time::from_micros);
+            return Reception::Impossible { earliest: Some(Time::from_micros(earliest)), latest };
         }
-        self.knowledge.hear(event, now);
+        self.version += 1;
+        self.knowledge.hear(event, heard);
         self.knowledge.add_evidence(event, evidence);
         let place = self.reduction.places[event.index()];
         let window = self.active.iter().copied().find(|&(_, _, link)| {
             self.reduction.stnu.links[link as usize].contingent == place.node && place.heard_by == Some(event)
         });
         match window {
-            Some((start, end, _)) if (start..=end).contains(&now) => {
-                self.happen(place.node, now, How::Observed)
+            Some((start, end, _)) if (start..=end).contains(&heard) => {
+                self.happen(place.node, heard, How::Observed)
             }
-            _ => {
-                if self.strategy == Strategy::Optimistic && self.says_more(event, before) {
-                    self.replan(event);
-                }
-                if place.heard_by != Some(event) {
-                    self.knowledge.fix(event, now, How::Observed);
-                }
+            _ if self.settings.strategy == Strategy::Optimistic && self.says_more(event, before) => {
+                self.stale = true;
             }
+            _ if place.heard_by != Some(event) => self.fix(event, heard, How::Observed),
+            _ => {}
         }
         Reception::Accepted
+    }
+
+    /// Takes news of an event that the model rules out: the event happened when its delay says, whatever its link says.
+    /// Returns whether there is still a plan for all the rest. An event whose activation has not happened is not taken.
+    pub fn handle_impossible(&mut self, now: Time, event: EventId) -> bool {
+        self.now = self.now.max(now.as_micros());
+        let (Some(link), Some(_)) = (self.network().link_of(event), self.happened(event)) else {
+            return false;
+        };
+        let link = self.network().contingents()[link];
+        self.version += 1;
+        self.knowledge.hear(event, self.now);
+        self.knowledge.overrule(event, heard_now(&link, self.now));
+        let rebuilt = self.rebuild().run();
+        self.adopt(rebuilt)
     }
 
     /// Does everything that is due by now: releases buffered news, imagines missing news, dispatches events.
     pub fn handle_timeout(&mut self, now: Time) {
         self.now = self.now.max(now.as_micros());
         while self.missed.is_none() {
-            let link = self.next_link();
-            let event = self.agenda.next();
+            let link = self.next_link().filter(|&(time, ..)| time <= self.now);
+            let event = self.agenda.next().filter(|&(action, _)| action <= self.now).map(|(_, node)| {
+                let due = self.agenda.due(node);
+                (self.recorded(due, self.now), node)
+            });
             match (link, event) {
                 // At one time Nature comes first, so that we act on all there is to know.
-                (Some((time, node, how)), event)
-                    if time <= self.now && event.is_none_or(|(due, _)| time <= due) =>
-                {
+                (Some((time, node, how)), event) if event.is_none_or(|(at, _)| time <= at) => {
                     self.happen(node, time, how);
                 }
-                (_, Some((time, node))) if time <= self.now => self.execute(time, node),
+                (_, Some((time, node))) => self.execute(time, node),
                 _ => break,
             }
         }
+    }
+
+    /// An event in flight was executed, `at` some time up to now. What follows it can go on.
+    pub fn handle_executed(&mut self, now: Time, event: EventId, at: Time) {
+        self.now = self.now.max(now.as_micros());
+        let Some(found) = self.in_flight.iter().position(|flight| flight.event == event) else { return };
+        let InFlight { node, due, .. } = self.in_flight.remove(found);
+        let time = self.recorded(due, at.as_micros());
+        self.version += 1;
+        if self.in_time(time, node) {
+            self.fix(event, time, How::Dispatched);
+            self.start(node, time);
+        }
+    }
+
+    /// An event in flight cannot be executed any more: the execution has failed.
+    pub fn handle_failed(&mut self, now: Time, event: EventId) {
+        self.now = self.now.max(now.as_micros());
+        if let Some(found) = self.in_flight.iter().position(|flight| flight.event == event) {
+            let InFlight { node, .. } = self.in_flight.remove(found);
+            let latest = Time::from_micros(self.agenda.upper(node));
+            self.version += 1;
+            self.missed = Some(Missed { event, time: Time::from_micros(self.now), latest });
+        }
+    }
+
+    /// The latest time at which an event in flight can be executed, if there is one.
+    pub fn latest(&self, event: EventId) -> Option<Time> {
+        let flight = self.in_flight.iter().find(|flight| flight.event == event)?;
+        Some(self.agenda.upper(flight.node)).filter(|&upper| upper < i64::MAX).map(Time::from_micros)
+    }
+
+    /// What is to be planned anew because of news, if anything is. While events are in flight it is not known from where
+    /// to plan, so that has to wait.
+    pub fn poll_rebuild(&mut self) -> Option<Rebuild> {
+        if !self.stale || !self.in_flight.is_empty() || self.missed.is_some() {
+            return None;
+        }
+        self.stale = false;
+        Some(self.rebuild())
+    }
+
+    /// Goes on with a new plan, unless something has happened since it was asked for; then it has to be asked for again.
+    /// Returns whether it was taken.
+    pub fn handle_rebuilt(&mut self, rebuilt: Rebuilt) -> bool {
+        if rebuilt.version != self.version {
+            self.stale = true;
+            return false;
+        }
+        self.adopt(rebuilt)
+    }
+
+    /// The next event to be fixed, however it came to be; call until there is none.
+    pub fn poll_fixed(&mut self) -> Option<EventId> {
+        self.fixed.pop_front()
+    }
+
+    /// True when nothing is left to be done, or nothing can be.
+    pub fn is_over(&mut self) -> bool {
+        self.missed.is_some() || self.in_flight.is_empty() && self.poll_timeout().is_none()
     }
 
     /// The next event to be dispatched; call until there is none.
@@ -191,7 +323,8 @@ impl Dispatcher {
         self.dispatches.pop_front()
     }
 
-    /// When there is something to do next if no news arrives; `None` when the execution is over.
+    /// When there is something to do next if nothing is heard; `None` when the execution is over or all depends on what is in
+    /// flight.
     pub fn poll_timeout(&mut self) -> Option<Time> {
         if self.missed.is_some() {
             return None;
@@ -222,21 +355,21 @@ impl Dispatcher {
     }
 
     /// True if the news of an event narrowed what was assumed of it or of its ancestors.
-    fn says_more(&self, event: EventId, before: Option<(i64, i64)>) -> bool {
+    fn says_more(&self, event: EventId, before: (i64, i64)) -> bool {
         let place = self.reduction.places[event.index()];
         let assumed = match self.agenda.executed(place.node) {
             Some(node) => Some((node.saturating_add(place.earliest), node.saturating_add(place.latest))),
-            None => before,
+            None => Some(before),
         };
         // Not yet executed: the plan is still to wait for it.
         self.agenda.executed(place.node).is_none() || self.happened(event) != assumed
     }
 
-    /// Puts what is known in place of the links and plans what is left anew.
-    fn replan(&mut self, news: EventId) {
-        let network = self.plan.network();
-        self.knowledge.settle_ancestors(network);
-        let happened = self.knowledge.all_happened(network);
+    /// Puts what is known in place of the links, for what is left to be planned anew.
+    fn rebuild(&mut self) -> Rebuild {
+        let network = self.plan.shared_network();
+        self.knowledge.settle_ancestors(&network);
+        let happened = self.knowledge.all_happened(&network);
         let known = network
             .event_ids()
             .map(|event| match (network.link_of(event), self.knowledge.of(event)) {
@@ -246,20 +379,45 @@ impl Dispatcher {
                 _ => None,
             })
             .collect();
-        let progress = Progress { now: Time::from_micros(self.now), known };
-        // In a delayed chain the reduction may be too careful to see that there is a way. Then the old plan stands.
-        let Some((reduction, net)) = self.plan.rest(&progress) else { return };
+        Rebuild::new(network, Time::from_micros(self.now), known, self.version)
+    }
+
+    fn adopt(&mut self, rebuilt: Rebuilt) -> bool {
+        let Some((reduction, net)) = rebuilt.plan else {
+            // In a delayed chain the reduction may be too careful to see that there is a way. Then the old plan stands.
+            for event in self.plan.network().event_ids() {
+                let known = *self.known(event);
+                if let (Some(heard), None) = (known.observed, known.fixed)
+                    && self.reduction.places[event.index()].heard_by != Some(event)
+                {
+                    self.fix(event, heard.as_micros(), How::Observed);
+                }
+            }
+            return false;
+        };
+        let planned = rebuilt.now.as_micros();
+        self.agenda = agenda(&reduction, &net, &self.confirmed, self.settings.lead);
         self.reduction = reduction;
-        self.agenda = Agenda::new(&net);
         self.active.clear();
         self.activate_from_origin();
+        for flight in &mut self.in_flight {
+            flight.node = self.reduction.places[flight.event.index()].node;
+            flight.due = flight.due.max(planned);
+            self.agenda.take(flight.node);
+        }
         for event in self.plan.network().event_ids() {
             let known = *self.known(event);
             if known.settled && known.fixed.is_none() {
-                let heard = event == news || known.observed.is_some();
-                self.knowledge.fix(event, self.now, if heard { How::Observed } else { How::Imagined });
+                let how = match known.observed {
+                    Some(heard) if heard.as_micros() >= planned => How::Observed,
+                    Some(_) => How::Buffered,
+                    None => How::Imagined,
+                };
+                let time = known.observed.map_or(planned, |heard| heard.as_micros().max(planned));
+                self.fix(event, time, how);
             }
         }
+        true
     }
 
     /// The origin of the plan is executed; what is measured from it has begun.
@@ -301,20 +459,40 @@ impl Dispatcher {
                 (time.saturating_add(place.earliest), time.saturating_add(place.latest)),
             );
         }
-        self.knowledge.fix(event, time, how);
+        self.fix(event, time, how);
         self.start(node, time);
     }
 
     fn execute(&mut self, time: i64, node: u32) {
-        let event = self.reduction.event_of[node as usize];
-        let latest = self.agenda.upper(node);
-        if time > latest {
-            let (time, latest) = (Time::from_micros(time), Time::from_micros(latest));
-            self.missed = Some(Missed { event, time, latest });
+        if !self.in_time(time, node) {
             return;
         }
-        self.dispatched(event, time);
-        self.start(node, time);
+        let event = self.reduction.event_of[node as usize];
+        self.version += 1;
+        self.dispatches.push_back(Dispatch { event, time: Time::from_micros(time) });
+        if self.confirmed[event.index()] {
+            self.agenda.take(node);
+            self.in_flight.push(InFlight { event, node, due: time });
+        } else {
+            self.fix(event, time, How::Dispatched);
+            self.start(node, time);
+        }
+    }
+
+    /// When an event that was due and is executed `at` some time is recorded: when due, unless that is too long ago.
+    fn recorded(&self, due: i64, at: i64) -> i64 {
+        if at.saturating_sub(due) > self.settings.lateness.as_micros() { at } else { due }
+    }
+
+    /// False, and the end of it all, if an event would be executed after its window.
+    fn in_time(&mut self, time: i64, node: u32) -> bool {
+        let latest = self.agenda.upper(node);
+        if time > latest {
+            let event = self.reduction.event_of[node as usize];
+            let (time, latest) = (Time::from_micros(time), Time::from_micros(latest));
+            self.missed = Some(Missed { event, time, latest });
+        }
+        time <= latest
     }
 
     /// What happens to everything measured from a node once that is executed.
@@ -335,9 +513,11 @@ impl Dispatcher {
         }
     }
 
-    fn dispatched(&mut self, event: EventId, time: i64) {
-        self.knowledge.fix(event, time, How::Dispatched);
-        self.dispatches.push_back(Dispatch { event, time: Time::from_micros(time) });
+    fn fix(&mut self, event: EventId, time: i64, how: How) {
+        if self.knowledge.fix(event, time, how) {
+            self.version += 1;
+            self.fixed.push_back(event);
+        }
     }
 
     /// When the last contingent event that nothing waits for has surely happened.
@@ -345,4 +525,12 @@ impl Dispatcher {
         let unheard = |event: &EventId| self.known(*event).observed.is_none();
         self.unplaced.iter().filter(|(_, event)| unheard(event)).map(|&(over, _)| over).max()
     }
+}
+
+/// The agenda of a plan, with the lead of the events that are to be confirmed.
+fn agenda(reduction: &Reduction, net: &Dispatchable, confirmed: &[bool], lead: Duration) -> Agenda {
+    Agenda::new(net, |node| {
+        let event = reduction.event_of[node as usize];
+        if confirmed[event.index()] { lead.as_micros() } else { 0 }
+    })
 }

@@ -20,6 +20,8 @@ pub struct Known {
     pub(crate) settled: bool,
     /// An interval in which it happened, from its own news or from the lack of it.
     evidence: Option<Interval>,
+    /// The news contradicts the model: the evidence stands against the link.
+    overruled: bool,
 }
 
 /// From the earliest to the latest, in microseconds after the origin.
@@ -69,14 +71,16 @@ impl Knowledge {
         &self.events[event.index()]
     }
 
-    /// Fixes an event, unless it is fixed already.
-    pub(crate) fn fix(&mut self, event: EventId, time: i64, how: How) {
+    /// Fixes an event; false if it is fixed already.
+    pub(crate) fn fix(&mut self, event: EventId, time: i64, how: How) -> bool {
         let known = &mut self.events[event.index()];
-        if known.fixed.is_none() {
-            known.fixed = Some((Time::from_micros(time), how));
-            known.sequence = self.fixed;
-            self.fixed += 1;
+        if known.fixed.is_some() {
+            return false;
         }
+        known.fixed = Some((Time::from_micros(time), how));
+        known.sequence = self.fixed;
+        self.fixed += 1;
+        true
     }
 
     pub(crate) fn hear(&mut self, event: EventId, now: i64) {
@@ -89,6 +93,14 @@ impl Knowledge {
         let before = known.evidence.unwrap_or(ANYTIME);
         known.evidence = Some((before.0.max(low), before.1.min(high)));
         known.settled = true;
+    }
+
+    /// The event happened in this interval, whatever the model says.
+    pub(crate) fn overrule(&mut self, event: EventId, evidence: Interval) {
+        let known = &mut self.events[event.index()];
+        known.evidence = Some(evidence);
+        known.settled = true;
+        known.overruled = true;
     }
 
     /// What follows an event that happened has to be preceded by it: its ancestors happened too.
@@ -141,7 +153,7 @@ impl Knowledge {
             tree.iter().map(|event| self.of(*event).evidence.unwrap_or(ANYTIME)).collect();
         for at in (0..tree.len()).rev() {
             let ContingentLink { from, lower, upper, .. } = *link(tree[at]);
-            if from != root {
+            if from != root && !self.of(tree[at]).overruled {
                 let (low, high) = allowed[at];
                 let parent = &mut allowed[self.number[from.index()] as usize];
                 parent.0 = parent.0.max(low.saturating_sub(upper.as_micros()));
@@ -154,6 +166,11 @@ impl Knowledge {
             let (low, high) =
                 if from == root { (start, start) } else { allowed[self.number[from.index()] as usize] };
             let here = &mut allowed[at];
+            if self.of(tree[at]).overruled {
+                // All that is left of the model: it did not happen before what it follows.
+                here.0 = here.0.max(low).min(here.1);
+                continue;
+            }
             here.0 = here.0.max(low.saturating_add(lower.as_micros()));
             here.1 = here.1.min(high.saturating_add(upper.as_micros()));
         }

@@ -48,12 +48,14 @@ pub mod execution;
 pub mod knowledge;
 pub mod nature;
 pub mod plan;
+pub mod rebuild;
 pub mod simulate;
 pub mod verify;
 
-pub use dispatcher::{Dispatch, Dispatcher, Missed, Reception, Strategy};
+pub use dispatcher::{Dispatch, Dispatcher, Missed, Reception, Settings, Strategy};
 pub use execution::{Execution, Failure, How, Outcome, Row};
 pub use nature::{Impossible, Temper};
 pub use plan::{NoPlan, Plan};
+pub use rebuild::{Rebuild, Rebuilt};
 pub use simulate::{Simulation, simulate};
 pub use verify::{Violation, verify};

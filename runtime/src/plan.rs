@@ -1,5 +1,7 @@
 //! A proven network, compiled for execution.
 
+use std::sync::Arc;
+
 use kirk_network::dispatchable::{dispatchable, dispatchable_quickly};
 use kirk_network::merge::merge;
 use kirk_network::reduce::{Progress, ReduceError, Reduction, reduce, reduce_rest};
@@ -9,7 +11,7 @@ use kirk_network::{Conflict, Dispatchable, Network, Verdict, check};
 /// What an execution needs: the merged network, how its news is used, and the dispatchable form.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    network: Network,
+    network: Arc<Network>,
     pub(crate) reduction: Reduction,
     pub(crate) net: Dispatchable,
 }
@@ -34,7 +36,7 @@ impl Plan {
     pub fn new(network: &Network) -> Result<Plan, NoPlan> {
         let merged = merge(network).network;
         match compile(reduce(&merged), LARGEST_MINIMAL)? {
-            Some((reduction, net)) => Ok(Plan { network: merged, reduction, net }),
+            Some((reduction, net)) => Ok(Plan { network: Arc::new(merged), reduction, net }),
             None => match check(network)? {
                 Verdict::Uncontrollable(conflict) => Err(NoPlan::Uncontrollable(conflict)),
                 Verdict::Controllable => unreachable!("a controllable network has a dispatchable form"),
@@ -47,10 +49,14 @@ impl Plan {
         &self.network
     }
 
-    /// The plan for what is left of an execution, `None` if there is none (possible in delayed chains only).
-    pub(crate) fn rest(&self, progress: &Progress) -> Option<(Reduction, Dispatchable)> {
-        compile(reduce_rest(&self.network, progress), 0).ok().flatten()
+    pub(crate) fn shared_network(&self) -> Arc<Network> {
+        Arc::clone(&self.network)
     }
+}
+
+/// The plan for what is left of an execution, `None` if there is none.
+pub(crate) fn rest(network: &Network, progress: &Progress) -> Option<(Reduction, Dispatchable)> {
+    compile(reduce_rest(network, progress), 0).ok().flatten()
 }
 
 /// Networks of more nodes are not worth the minimal form: that takes longer than it saves.

@@ -6,7 +6,7 @@ use std::collections::BinaryHeap;
 use kirk_network::json::Seconds;
 use kirk_network::{Duration, EventId, Network, Time};
 
-use crate::dispatcher::{Dispatcher, Missed, Reception, Strategy};
+use crate::dispatcher::{Dispatcher, Missed, Reception, Settings, Strategy};
 use crate::execution::{Execution, FORMAT, Failure, How, Outcome, Row, at};
 use crate::nature::{Impossible, Nature, Temper};
 use crate::plan::Plan;
@@ -33,7 +33,7 @@ pub struct Simulation {
 pub fn simulate(plan: &Plan, program: &str, simulation: &Simulation) -> Result<Execution, Impossible> {
     let network = plan.network();
     let mut nature = Nature::new(network, simulation.nature, simulation.seed, &simulation.observations);
-    let mut dispatcher = Dispatcher::new(plan.clone(), simulation.strategy);
+    let mut dispatcher = Dispatcher::new(plan.clone(), Settings::of(simulation.strategy));
     let mut truth: Vec<Option<Time>> = vec![None; network.events().len()];
     let mut news: BinaryHeap<Reverse<(Time, EventId)>> = BinaryHeap::new();
     let mut now = Time::ZERO;
@@ -44,6 +44,7 @@ pub fn simulate(plan: &Plan, program: &str, simulation: &Simulation) -> Result<E
                 news.pop();
                 let reception = dispatcher.handle_observation(time, event);
                 debug_assert_eq!(reception, Reception::Accepted, "Nature keeps to the model");
+                plan_anew(&mut dispatcher);
             }
             dispatcher.handle_timeout(now);
             while let Some(dispatch) = dispatcher.poll_dispatch() {
@@ -67,6 +68,7 @@ pub fn simulate(plan: &Plan, program: &str, simulation: &Simulation) -> Result<E
     while let Some(Reverse((time, event))) = news.pop() {
         if simulation.observations.contains(&(event, time)) {
             dispatcher.handle_observation(time, event);
+            plan_anew(&mut dispatcher);
             let late = dispatcher.known(event).fixed.is_some_and(|(fixed, _)| fixed > now);
             now = if late { time } else { now };
         }
@@ -74,6 +76,13 @@ pub fn simulate(plan: &Plan, program: &str, simulation: &Simulation) -> Result<E
     let mut execution = record(&dispatcher, program, now, simulation.internal, &truth);
     execution.seed = Some(simulation.seed);
     Ok(execution)
+}
+
+/// Planning anew takes no time here.
+fn plan_anew(dispatcher: &mut Dispatcher) {
+    while let Some(rebuild) = dispatcher.poll_rebuild() {
+        dispatcher.handle_rebuilt(rebuild.run());
+    }
 }
 
 /// The record of an execution that is over at `end`; `truth` where it is known.

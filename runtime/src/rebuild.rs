@@ -1,0 +1,43 @@
+//! Planning anew with what news has told: work that may be done elsewhere while the old plan is still followed.
+
+use std::sync::Arc;
+
+use kirk_network::reduce::{Progress, Reduction};
+use kirk_network::{Dispatchable, Network, Time};
+
+use crate::plan::rest;
+
+/// What is to be planned anew: what is left of an execution, from the state it was in.
+#[derive(Clone, Debug)]
+pub struct Rebuild {
+    network: Arc<Network>,
+    progress: Progress,
+    version: u64,
+}
+
+/// What came of it.
+#[derive(Clone, Debug)]
+pub struct Rebuilt {
+    /// `None` if there is no plan: in delayed chains, and when Nature does not keep to the model.
+    pub(crate) plan: Option<(Reduction, Dispatchable)>,
+    /// The time from which it plans.
+    pub(crate) now: Time,
+    /// The state of the execution it is for.
+    pub(crate) version: u64,
+}
+
+impl Rebuild {
+    pub(crate) fn new(
+        network: Arc<Network>,
+        now: Time,
+        known: Vec<Option<(Time, Time)>>,
+        version: u64,
+    ) -> Rebuild {
+        Rebuild { network, progress: Progress { now, known }, version }
+    }
+
+    /// Does the work.
+    pub fn run(self) -> Rebuilt {
+        Rebuilt { plan: rest(&self.network, &self.progress), now: self.progress.now, version: self.version }
+    }
+}

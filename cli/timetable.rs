@@ -9,6 +9,7 @@ pub(crate) fn timetable(execution: &Execution) -> String {
             format!("failed at {} s: {} ({})", failure.time.0, failure.detail, failure.reason)
         }
         (Outcome::Failed, None) => "failed".to_string(),
+        (Outcome::Running, _) => format!("at {} s", execution.makespan.0),
         (Outcome::Completed, _) => format!("completed in {} s", execution.makespan.0),
     };
     let cells: Vec<[String; 3]> = execution.rows.iter().map(cells).collect();

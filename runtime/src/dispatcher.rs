@@ -181,10 +181,11 @@ impl Dispatcher {
         self.missed
     }
 
-    /// Takes news of an event that arrives now. News that is outside of what the model allows by no more than the lead and
-    /// the lateness of dispatches counts as if it had come when it may.
-    pub fn handle_observation(&mut self, now: Time, event: EventId) -> Reception {
-        self.now = self.now.max(now.as_micros());
+    /// Takes news of an event that arrived at a time, usually now. News that is outside of what the model allows by no more
+    /// than the lead and the lateness of dispatches counts as if it had come when it may.
+    pub fn handle_observation(&mut self, arrived: Time, event: EventId) -> Reception {
+        let arrived = arrived.as_micros();
+        self.now = self.now.max(arrived);
         let Some(link) = self.network().link_of(event) else { return Reception::NotContingent };
         if self.known(event).observed.is_some() {
             return Reception::Repeated;
@@ -195,9 +196,9 @@ impl Dispatcher {
         };
         let earliest = before.0.saturating_add(link.delay.min.as_micros());
         let latest = link.delay.max.finite().map(|max| before.1.saturating_add(max.as_micros()));
-        let nearest = self.now.max(earliest).min(latest.unwrap_or(i64::MAX));
+        let nearest = arrived.max(earliest).min(latest.unwrap_or(i64::MAX));
         let slack = self.settings.lead.as_micros().saturating_add(self.settings.lateness.as_micros());
-        let heard = if (nearest - self.now).abs() <= slack { nearest } else { self.now };
+        let heard = if nearest.abs_diff(arrived) <= slack.unsigned_abs() { nearest } else { arrived };
         let evidence = heard_now(&link, heard);
         if before.0.max(evidence.0) > before.1.min(evidence.1) || before.0 > heard {
             let latest = latest.map(Time::from_micros);
@@ -290,7 +291,8 @@ impl Dispatcher {
 
     /// What is to be planned anew because of news, if anything is. While events are in flight it is not known from where
     /// to plan, so that has to wait.
-    pub fn poll_rebuild(&mut self) -> Option<Rebuild> {
+    pub fn poll_rebuild(&mut self, now: Time) -> Option<Rebuild> {
+        self.now = self.now.max(now.as_micros());
         if !self.stale || !self.in_flight.is_empty() || self.missed.is_some() {
             return None;
         }
@@ -311,6 +313,29 @@ impl Dispatcher {
     /// The next event to be fixed, however it came to be; call until there is none.
     pub fn poll_fixed(&mut self) -> Option<EventId> {
         self.fixed.pop_front()
+    }
+
+    /// Until when the moment of acting on a contingent event could have been: the end of its window, if it has one.
+    pub fn window_end(&self, event: EventId) -> Option<Time> {
+        let node = self.reduction.places[event.index()].node;
+        let link = self.reduction.stnu.links.iter().find(|link| link.contingent == node)?;
+        let start = self.agenda.executed(link.activation)?;
+        Some(Time::from_micros(start.saturating_add(link.upper)))
+    }
+
+    /// True from the dispatch of an event to its confirmation.
+    pub fn is_in_flight(&self, event: EventId) -> bool {
+        self.in_flight.iter().any(|flight| flight.event == event)
+    }
+
+    /// The executable event at which the tree of links that an event belongs to begins; itself if it is executable.
+    pub fn root(&self, event: EventId) -> EventId {
+        self.knowledge.root(event)
+    }
+
+    /// Changes whenever anything has happened.
+    pub fn version(&self) -> u64 {
+        self.version
     }
 
     /// True when nothing is left to be done, or nothing can be.

@@ -37,6 +37,8 @@ pub enum Outcome {
     Completed,
     /// Something made it impossible to go on.
     Failed,
+    /// It is not over.
+    Running,
 }
 
 /// Why an execution failed.
@@ -47,7 +49,7 @@ pub struct Failure {
     pub event: String,
     /// When it failed.
     pub time: Seconds,
-    /// One word: `missed-window`, `not-controllable`.
+    /// One word: `missed-window`, `not-controllable`, `driver-failed`, `broken-model`, `journal-failed`, `stopped`.
     pub reason: String,
     /// A sentence for people.
     pub detail: String,

@@ -71,6 +71,10 @@ impl Knowledge {
         &self.events[event.index()]
     }
 
+    pub(crate) fn root(&self, event: EventId) -> EventId {
+        self.root[event.index()]
+    }
+
     /// Fixes an event; false if it is fixed already.
     pub(crate) fn fix(&mut self, event: EventId, time: i64, how: How) -> bool {
         let known = &mut self.events[event.index()];

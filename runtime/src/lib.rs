@@ -42,20 +42,30 @@
 //!
 //! Clocks, threads, sockets and files; names of forms (the compiler has them).
 
+pub mod activity;
 mod agenda;
 pub mod dispatcher;
 pub mod execution;
+pub mod executive;
+pub mod journal;
 pub mod knowledge;
 pub mod nature;
+mod order;
 pub mod plan;
 pub mod rebuild;
+pub mod replay;
 pub mod simulate;
 pub mod verify;
 
+pub use activity::{Handover, Scope, handovers, original_spelling};
 pub use dispatcher::{Dispatch, Dispatcher, Missed, Reception, Settings, Strategy};
 pub use execution::{Execution, Failure, How, Outcome, Row};
+pub use executive::{Answer, Executive, Output, Sending, Setup};
+pub use journal::{BadJournal, Clocks, Journal};
 pub use nature::{Impossible, Temper};
+pub use order::Patience;
 pub use plan::{NoPlan, Plan};
 pub use rebuild::{Rebuild, Rebuilt};
+pub use replay::{Replay, replay};
 pub use simulate::{Simulation, simulate};
 pub use verify::{Violation, verify};

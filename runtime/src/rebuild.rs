@@ -36,6 +36,11 @@ impl Rebuild {
         Rebuild { network, progress: Progress { now, known }, version }
     }
 
+    /// The time from which it is planned.
+    pub fn now(&self) -> Time {
+        self.progress.now
+    }
+
     /// Does the work.
     pub fn run(self) -> Rebuilt {
         Rebuilt { plan: rest(&self.network, &self.progress), now: self.progress.now, version: self.version }

@@ -44,7 +44,7 @@ pub fn simulate(plan: &Plan, program: &str, simulation: &Simulation) -> Result<E
                 news.pop();
                 let reception = dispatcher.handle_observation(time, event);
                 debug_assert_eq!(reception, Reception::Accepted, "Nature keeps to the model");
-                plan_anew(&mut dispatcher);
+                plan_anew(&mut dispatcher, time);
             }
             dispatcher.handle_timeout(now);
             while let Some(dispatch) = dispatcher.poll_dispatch() {
@@ -68,7 +68,7 @@ pub fn simulate(plan: &Plan, program: &str, simulation: &Simulation) -> Result<E
     while let Some(Reverse((time, event))) = news.pop() {
         if simulation.observations.contains(&(event, time)) {
             dispatcher.handle_observation(time, event);
-            plan_anew(&mut dispatcher);
+            plan_anew(&mut dispatcher, time);
             let late = dispatcher.known(event).fixed.is_some_and(|(fixed, _)| fixed > now);
             now = if late { time } else { now };
         }
@@ -79,14 +79,14 @@ pub fn simulate(plan: &Plan, program: &str, simulation: &Simulation) -> Result<E
 }
 
 /// Planning anew takes no time here.
-fn plan_anew(dispatcher: &mut Dispatcher) {
-    while let Some(rebuild) = dispatcher.poll_rebuild() {
+fn plan_anew(dispatcher: &mut Dispatcher, now: Time) {
+    while let Some(rebuild) = dispatcher.poll_rebuild(now) {
         dispatcher.handle_rebuilt(rebuild.run());
     }
 }
 
-/// The record of an execution that is over at `end`; `truth` where it is known.
-fn record(
+/// The record of an execution up to `end`; `truth` where it is known.
+pub(crate) fn record(
     dispatcher: &Dispatcher,
     program: &str,
     end: Time,
@@ -113,7 +113,7 @@ fn record(
             how,
             observed: contingent.then(|| known.observed.map(at)),
             happened: happened.filter(|_| contingent).map(interval),
-            truth: truth[event.index()].map(at),
+            truth: truth.get(event.index()).copied().flatten().map(at),
         };
         for name in &network.events()[event.index()].names {
             if internal || !name.internal {
@@ -134,7 +134,7 @@ fn record(
     }
 }
 
-fn missed_window(network: &Network, missed: Missed) -> Failure {
+pub(crate) fn missed_window(network: &Network, missed: Missed) -> Failure {
     let event = network.label(missed.event).to_string();
     let detail = format!(
         "`{event}` could be executed until {} at the latest, but what it waits for came at {}",

@@ -74,6 +74,9 @@ impl Verifier<'_> {
             let detail = execution.failure.as_ref().map_or(String::new(), |f| format!(": {}", f.detail));
             self.say(None, format!("the execution is recorded as failed{detail}"));
         }
+        if execution.outcome == Outcome::Running {
+            self.say(None, "the execution is recorded before its end".to_string());
+        }
         let mut rows: BTreeMap<String, &Row> = BTreeMap::new();
         for row in &execution.rows {
             if rows.insert(row.event.to_lowercase(), row).is_some() {

@@ -1,0 +1,466 @@
+//! The executive: the dispatcher and what stands between it and the world, still without a clock.
+//!
+//! It hands events over to a driver, under an id that stays the same, until the driver confirms them or their window
+//! closes; it answers news; it says when the model is broken, when the mission is over and why it failed. Everything that
+//! happens to it comes in through a `handle_*` method with its time, so a list of those calls is the whole execution: the
+//! [`journal`](crate::journal) is that list.
+
+use std::collections::VecDeque;
+
+use kirk_network::{Duration, EventId, Network, Time};
+
+use crate::activity::Handover;
+use crate::dispatcher::{Dispatcher, Reception, Settings};
+use crate::execution::{Execution, Failure, Outcome, at};
+use crate::order::{Order, Patience, State};
+use crate::plan::Plan;
+use crate::rebuild::{Rebuild, Rebuilt};
+use crate::simulate::{missed_window, record};
+
+/// An executive in the middle of its mission.
+#[derive(Clone, Debug)]
+pub struct Executive {
+    dispatcher: Dispatcher,
+    program: String,
+    /// What the ids of its dispatches begin with.
+    run: String,
+    lateness: Duration,
+    patience: Patience,
+    handovers: Vec<Handover>,
+    /// For each event, where its handovers begin and end.
+    handovers_of: Vec<(u32, u32)>,
+    orders: Vec<Order>,
+    /// Contingent events that start activities, which nobody has been told of.
+    unannounced: Vec<EventId>,
+    /// News of what began with an event that is in flight.
+    held: Vec<(Time, EventId)>,
+    outputs: VecDeque<Output>,
+    failure: Option<Failure>,
+    over: bool,
+    changes: u64,
+}
+
+/// What is to be done, or told.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Output {
+    /// Hand this over to the driver.
+    Send(Sending),
+    /// This event was fixed: dispatched and confirmed, observed, released from the buffer, imagined.
+    Fixed(EventId),
+    /// Something a person should know.
+    Warning(String),
+    /// The mission is over.
+    Over,
+}
+
+/// One attempt to hand an event over.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Sending {
+    /// The same for every attempt, and after a restart: whoever has seen it does not do it again.
+    pub id: String,
+    /// The event, under one of its names.
+    pub name: String,
+    /// The end of the activity it starts.
+    pub companion: Option<String>,
+    /// When it is due.
+    pub due: Time,
+    /// Until when it may be executed, if there is such a time.
+    pub latest: Option<Time>,
+    /// 1 for the first.
+    pub attempt: u32,
+}
+
+/// What became of news.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Answer {
+    /// It is known now.
+    Accepted,
+    /// It is of no use, and why.
+    Ignored(String),
+}
+
+/// How an executive is set up.
+#[derive(Clone, Debug)]
+pub struct Setup {
+    /// The control program, or the name of the network.
+    pub program: String,
+    /// What the ids of its dispatches begin with; no two runs share it.
+    pub run: String,
+    /// Lead and lateness; what is confirmed follows from the handovers.
+    pub settings: Settings,
+    /// What the driver hears of, in the order of the events. Empty if there is no driver.
+    pub handovers: Vec<Handover>,
+    /// How long to wait before trying again.
+    pub patience: Patience,
+}
+
+impl Executive {
+    /// Starts a mission: it is time 0.
+    pub fn new(plan: Plan, setup: Setup) -> Executive {
+        let Setup { program, run, mut settings, handovers, patience } = setup;
+        let network = plan.network();
+        let ours = |event: EventId| network.link_of(event).is_none() && event != network.origin();
+        settings.confirmed =
+            handovers.iter().map(|handover| handover.event).filter(|&event| ours(event)).collect();
+        let unannounced = handovers.iter().map(|handover| handover.event);
+        let mut unannounced: Vec<EventId> =
+            unannounced.filter(|&event| network.link_of(event).is_some()).collect();
+        unannounced.dedup();
+        let mut handovers_of = vec![(0, 0); network.events().len()];
+        for (index, handover) in handovers.iter().enumerate() {
+            let (start, end) = &mut handovers_of[handover.event.index()];
+            *start = if *end == 0 { index as u32 } else { *start };
+            *end = index as u32 + 1;
+        }
+        let mut executive = Executive {
+            lateness: settings.lateness,
+            dispatcher: Dispatcher::new(plan, settings),
+            program,
+            run,
+            patience,
+            handovers,
+            handovers_of,
+            orders: Vec::new(),
+            unannounced,
+            held: Vec::new(),
+            outputs: VecDeque::new(),
+            failure: None,
+            over: false,
+            changes: 0,
+        };
+        executive.settle(Time::ZERO);
+        executive
+    }
+
+    /// The network that is executed.
+    pub fn network(&self) -> &Network {
+        self.dispatcher.network()
+    }
+
+    /// The dispatcher, to look at.
+    pub fn dispatcher(&self) -> &Dispatcher {
+        &self.dispatcher
+    }
+
+    /// Changes whenever anything has happened; a call that changes nothing need not be recorded.
+    pub fn version(&self) -> u64 {
+        self.dispatcher.version().wrapping_add(self.changes)
+    }
+
+    /// True when the mission is over.
+    pub fn is_over(&self) -> bool {
+        self.over
+    }
+
+    /// Why the mission failed, if it did.
+    pub fn failure(&self) -> Option<&Failure> {
+        self.failure.as_ref()
+    }
+
+    /// Does everything that is due by now.
+    pub fn handle_timeout(&mut self, now: Time) {
+        if self.over {
+            return;
+        }
+        self.dispatcher.handle_timeout(now);
+        self.settle(now);
+    }
+
+    /// Takes news that arrived at a time, usually now.
+    pub fn handle_news(&mut self, arrived: Time, event: EventId) -> Answer {
+        let name = self.network().label(event).to_string();
+        if self.dispatcher.known(event).observed.is_some() || self.held.iter().any(|held| held.1 == event) {
+            return Answer::Ignored(format!("`{name}` was heard before"));
+        }
+        if self.network().link_of(event).is_none() {
+            return Answer::Ignored(format!("`{name}` is not Nature's to decide: kirk dispatches it"));
+        }
+        if self.over {
+            return Answer::Ignored("the mission is over".to_string());
+        }
+        // What was due before comes before; at one time Nature comes first.
+        self.handle_timeout(Time::from_micros(arrived.as_micros() - 1));
+        if self.dispatcher.is_in_flight(self.dispatcher.root(event)) {
+            self.held.push((arrived, event));
+            self.changes += 1;
+            return Answer::Accepted;
+        }
+        let answer = self.hear(arrived, event);
+        self.handle_timeout(arrived);
+        answer
+    }
+
+    /// The driver has executed what was handed over, `ago` before now if it says so.
+    pub fn handle_executed(&mut self, now: Time, id: &str, ago: Option<Duration>) {
+        let Some(order) = self.orders.iter_mut().find(|order| order.id == id) else { return };
+        if self.over || order.state == State::Done {
+            return;
+        }
+        order.state = State::Done;
+        if let Some(at) = ago.and_then(|ago| now.as_micros().checked_sub(ago.as_micros())) {
+            order.started = Time::from_micros(at).max(order.first_sent);
+        }
+        self.changes += 1;
+        let event = order.event;
+        let of_event = || self.orders.iter().filter(|order| order.event == event);
+        if of_event().all(|order| order.state == State::Done) {
+            let started = of_event().map(|order| order.started).max().unwrap_or(now);
+            self.dispatcher.handle_executed(now, event, started);
+        }
+        self.settle(now);
+        for (arrived, event) in std::mem::take(&mut self.held) {
+            if self.dispatcher.is_in_flight(self.dispatcher.root(event)) {
+                self.held.push((arrived, event));
+            } else {
+                self.hear(arrived, event);
+            }
+        }
+        self.handle_timeout(now);
+    }
+
+    /// The driver could not execute what was handed over. It is tried again while that makes sense.
+    pub fn handle_failed(&mut self, now: Time, id: &str, reason: &str) {
+        let patience = self.patience;
+        let Some(order) = self.orders.iter_mut().find(|order| order.id == id) else { return };
+        if self.over || !matches!(order.state, State::Sent) {
+            return;
+        }
+        order.failed(now, reason, patience);
+        self.changes += 1;
+        self.settle(now);
+    }
+
+    /// The executive was away and is back: whatever was not confirmed is handed over again, under the same id. The driver
+    /// is asked, as it were, whether it was done before, so it counts from when the driver was told; `unsent` are the ids of
+    /// those of which the driver cannot have heard, which count from now.
+    pub fn handle_resumed(&mut self, now: Time, unsent: &[String]) {
+        if self.over {
+            return;
+        }
+        self.changes += 1;
+        for at in 0..self.orders.len() {
+            let order = &mut self.orders[at];
+            if order.state == State::Sent {
+                if unsent.contains(&order.id) {
+                    order.started = now;
+                }
+                order.attempts += 1;
+                self.send(at);
+            }
+        }
+        self.handle_timeout(now);
+    }
+
+    /// Somebody or something outside ends the mission.
+    pub fn handle_stopped(&mut self, now: Time, reason: &str, detail: &str) {
+        if !self.over {
+            self.fail(self.network().origin(), now, reason, detail.to_string());
+        }
+    }
+
+    /// What is to be planned anew because of news, if anything is.
+    pub fn poll_rebuild(&mut self, now: Time) -> Option<Rebuild> {
+        if self.over { None } else { self.dispatcher.poll_rebuild(now) }
+    }
+
+    /// Goes on with a new plan. Returns whether it was taken.
+    pub fn handle_rebuilt(&mut self, now: Time, rebuilt: Rebuilt) -> bool {
+        let taken = !self.over && self.dispatcher.handle_rebuilt(rebuilt);
+        self.handle_timeout(now);
+        taken
+    }
+
+    /// What is to be done or told next.
+    pub fn poll_output(&mut self) -> Option<Output> {
+        self.outputs.pop_front()
+    }
+
+    /// When to call [`Executive::handle_timeout`] if nothing is heard before.
+    pub fn poll_timeout(&mut self) -> Option<Time> {
+        if self.over {
+            return None;
+        }
+        let retry = self.orders.iter().filter_map(|order| order.state.wakes());
+        let surely = self.unannounced.iter().filter_map(|&event| {
+            let (_, high) = self.dispatcher.happened(event)?;
+            Some(Time::from_micros(high))
+        });
+        let soonest = retry.chain(surely).min();
+        soonest.into_iter().chain(self.dispatcher.poll_timeout()).min()
+    }
+
+    /// The execution as it stands.
+    pub fn execution(&self, now: Time, internal: bool) -> Execution {
+        let end = if self.over { self.end() } else { now };
+        let mut execution = record(&self.dispatcher, &self.program, end, internal, &[]);
+        execution.failure = self.failure.clone();
+        execution.outcome = match (&self.failure, self.over) {
+            (Some(_), _) => Outcome::Failed,
+            (None, true) => Outcome::Completed,
+            (None, false) => Outcome::Running,
+        };
+        execution
+    }
+
+    /// When the last thing happened, or surely had.
+    fn end(&self) -> Time {
+        if let Some(failure) = &self.failure {
+            return Time::from_micros(failure.time.0.as_micros());
+        }
+        let ends = self.network().event_ids().filter_map(|event| {
+            let known = self.dispatcher.known(event);
+            let surely = || self.dispatcher.happened(event).map(|(_, high)| Time::from_micros(high));
+            known.fixed.map(|(time, _)| time).max(known.observed).or_else(surely)
+        });
+        ends.max().unwrap_or(Time::ZERO)
+    }
+
+    fn hear(&mut self, arrived: Time, event: EventId) -> Answer {
+        let name = self.network().label(event).to_string();
+        match self.dispatcher.handle_observation(arrived, event) {
+            Reception::Accepted => Answer::Accepted,
+            Reception::Repeated => Answer::Ignored(format!("`{name}` was heard before")),
+            Reception::NotContingent => {
+                Answer::Ignored(format!("`{name}` is not Nature's to decide: kirk dispatches it"))
+            }
+            Reception::Impossible { earliest: None, .. } => {
+                let start = self.network().label(self.dispatcher.root(event));
+                Answer::Ignored(format!("`{name}` cannot have happened: `{start}` has not been executed"))
+            }
+            Reception::Impossible { earliest: Some(earliest), latest } => {
+                let window = match latest {
+                    Some(latest) if arrived > latest => format!("too late: it was to come by {latest} s"),
+                    _ => format!("too early: it was to come from {earliest} s on"),
+                };
+                let said = format!("the model is broken: news of `{name}` at {arrived} s is {window}");
+                if self.dispatcher.handle_impossible(arrived, event) {
+                    self.outputs.push_back(Output::Warning(format!(
+                        "{said}; the rest can still be guaranteed, the mission goes on"
+                    )));
+                } else {
+                    self.fail(
+                        event,
+                        arrived,
+                        "broken-model",
+                        format!("{said}, and the rest cannot be guaranteed any more"),
+                    );
+                }
+                Answer::Accepted
+            }
+        }
+    }
+
+    /// Turns what the dispatcher has decided into orders and outputs, and looks after the orders there are.
+    fn settle(&mut self, now: Time) {
+        while let Some(dispatch) = self.dispatcher.poll_dispatch() {
+            self.hand_over(dispatch.event, dispatch.time, now);
+        }
+        while let Some(event) = self.dispatcher.poll_fixed() {
+            self.outputs.push_back(Output::Fixed(event));
+        }
+        let surely = |dispatcher: &Dispatcher, event: EventId| {
+            let fixed = dispatcher.known(event).fixed.map(|(time, _)| time);
+            let high = dispatcher.happened(event).map(|(_, high)| Time::from_micros(high));
+            fixed.or(high.filter(|&high| high <= now))
+        };
+        for event in std::mem::take(&mut self.unannounced) {
+            match surely(&self.dispatcher, event) {
+                Some(time) => self.hand_over(event, time, now),
+                None => self.unannounced.push(event),
+            }
+        }
+        for at in 0..self.orders.len() {
+            self.look_after(at, now);
+        }
+        if self.over {
+            return;
+        }
+        if let Some(missed) = self.dispatcher.missed() {
+            let failure = missed_window(self.network(), missed);
+            self.fail(missed.event, missed.time, &failure.reason, failure.detail);
+        } else if self.unannounced.is_empty()
+            && self.held.is_empty()
+            && self.orders.iter().all(|order| order.state == State::Done)
+            && self.dispatcher.is_over()
+        {
+            self.over = true;
+            self.changes += 1;
+            self.outputs.push_back(Output::Over);
+        }
+    }
+
+    /// Begins to hand an event over, under each name that starts an activity.
+    fn hand_over(&mut self, event: EventId, due: Time, now: Time) {
+        let (start, end) = self.handovers_of[event.index()];
+        let window = self.dispatcher.window_end(event).map_or(due, |end| end.max(due));
+        let closes = window.checked_add(self.lateness).unwrap_or(window);
+        for at in start..end {
+            let Handover { name, companion, .. } = &self.handovers[at as usize];
+            self.orders.push(Order {
+                id: format!("{}/{name}", self.run),
+                event,
+                name: name.clone(),
+                companion: companion.clone(),
+                due,
+                closes,
+                first_sent: now,
+                started: now,
+                attempts: 1,
+                state: State::Sent,
+                reason: String::new(),
+            });
+            self.send(self.orders.len() - 1);
+        }
+    }
+
+    fn send(&mut self, at: usize) {
+        let Order { id, name, companion, due, attempts, event, .. } = self.orders[at].clone();
+        let latest = self.dispatcher.latest(event);
+        self.outputs.push_back(Output::Send(Sending { id, name, companion, due, latest, attempt: attempts }));
+    }
+
+    /// Tries again what failed, or gives up when its window has closed.
+    fn look_after(&mut self, at: usize, now: Time) {
+        let order = &self.orders[at];
+        let State::Waiting(again) = order.state else { return };
+        let flying = self.dispatcher.is_in_flight(order.event);
+        let closes = match self.dispatcher.latest(order.event) {
+            Some(latest) => Some(latest.checked_add(self.lateness).unwrap_or(latest)),
+            None if flying => None,
+            None => Some(order.closes),
+        };
+        if closes.is_some_and(|closes| now > closes) {
+            if !self.over {
+                let detail = format!(
+                    "the driver could not execute `{}` in time, after {} attempts: {}",
+                    order.name, order.attempts, order.reason
+                );
+                let event = order.event;
+                self.dispatcher.handle_failed(now, event);
+                self.fail(event, now, "driver-failed", detail);
+            }
+        } else if now >= again {
+            let order = &mut self.orders[at];
+            order.attempts += 1;
+            order.started = now;
+            order.state = State::Sent;
+            self.changes += 1;
+            self.send(at);
+        } else if let Some(closes) = closes.filter(|&closes| closes < again) {
+            // One last time while it is open.
+            self.orders[at].state = State::Waiting(closes.max(now));
+        }
+    }
+
+    fn fail(&mut self, event: EventId, now: Time, reason: &str, detail: String) {
+        self.failure = Some(Failure {
+            event: self.network().label(event).to_string(),
+            time: at(now),
+            reason: reason.to_string(),
+            detail,
+        });
+        self.over = true;
+        self.changes += 1;
+        self.outputs.push_back(Output::Over);
+    }
+}

@@ -1,0 +1,386 @@
+//! The journal: everything that happened to an executive, line by line, so that it can be continued or repeated.
+//!
+//! A line is a checksum, a blank and a JSON object with a time and what happened then. The checksum (CRC-32, in
+//! hexadecimal) is over the checksum of the line before and the JSON, so a line that is damaged, missing or moved is
+//! noticed. The first line says what is executed and how. Lines are only ever added; the last one may be torn.
+//!
+//! Some records are what happened to the executive, in the order it happened; they determine everything. The others are
+//! what came of it, for people, for checking a repetition, and for knowing what had left when the journal ends.
+
+use std::fmt;
+
+use kirk_network::json::{self, Seconds, seconds};
+use kirk_network::model::Name;
+use kirk_network::{Duration, Event, Network, Time};
+use serde::{Deserialize, Serialize};
+use serde_json::value::RawValue;
+
+use crate::activity::Handover;
+use crate::dispatcher::{Settings, Strategy};
+use crate::execution::Execution;
+use crate::executive::{Executive, Setup};
+use crate::order::Patience;
+use crate::plan::{NoPlan, Plan};
+
+/// The `format` of the journals written and read here.
+pub const FORMAT: &str = "kirk-journal/1";
+
+/// One line.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Line {
+    /// When, in seconds after the start of the mission.
+    pub at: Seconds,
+    /// What.
+    pub record: Record,
+}
+
+/// What happened.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Record {
+    /// The mission begins: the first line, and no other.
+    Start(Box<Start>),
+    /// Something was due.
+    Timeout {},
+    /// News arrived, and was of use.
+    News {
+        /// The event.
+        event: String,
+    },
+    /// The driver confirmed an event.
+    Executed {
+        /// The dispatch.
+        id: String,
+        /// How long before it was executed, if the driver says so.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        ago: Option<Seconds>,
+    },
+    /// The driver failed to execute an event.
+    Failed {
+        /// The dispatch.
+        id: String,
+        /// Why.
+        reason: String,
+    },
+    /// A new plan was ready.
+    Rebuilt {
+        /// The time from which it plans.
+        from: Seconds,
+    },
+    /// The executive was away and is back.
+    Resumed {
+        /// What the clocks say.
+        clocks: Clocks,
+        /// Dispatches that had not left.
+        unsent: Vec<String>,
+    },
+    /// The mission was ended from outside.
+    Stopped {
+        /// One word.
+        reason: String,
+        /// A sentence.
+        detail: String,
+    },
+    /// Came of it: an event is to be handed over.
+    Dispatch {
+        /// The dispatch.
+        id: String,
+        /// When it is due.
+        due: Seconds,
+        /// 1 for the first.
+        attempt: u32,
+    },
+    /// Came of it: a dispatch leaves now.
+    Sent {
+        /// The dispatch.
+        id: String,
+    },
+    /// Came of it: this is what will be due then, unless something happens before. It is on disk before it leaves.
+    Ahead {
+        /// When.
+        due: Seconds,
+        /// The dispatches.
+        ids: Vec<String>,
+    },
+    /// Came of it: something a person should know.
+    Warning {
+        /// A sentence.
+        text: String,
+    },
+    /// News arrived that was of no use. Further news of the same kind is not recorded.
+    Ignored {
+        /// The event, as it was called.
+        event: String,
+        /// Why.
+        why: String,
+    },
+    /// Came of it: the mission is over.
+    End {
+        /// What became of it.
+        execution: Execution,
+    },
+}
+
+/// What is executed, and how: all it takes to go on.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Start {
+    /// Always [`FORMAT`].
+    pub format: String,
+    /// The version of kirk that wrote it.
+    pub version: String,
+    /// The control program, or the name of the network.
+    pub program: String,
+    /// What the ids of its dispatches begin with.
+    pub run: String,
+    /// True if news that says more than the plan assumed is planned with.
+    pub optimistic: bool,
+    /// How long before they are due events are handed over.
+    pub lead: Seconds,
+    /// Up to how late an event counts as executed when it was due.
+    pub lateness: Seconds,
+    /// How long to wait before trying again, at first and at most.
+    pub patience: (Seconds, Seconds),
+    /// How many times faster than real time it is executed.
+    pub speed: f64,
+    /// What the driver hears of: names and companions.
+    pub handovers: Vec<(String, Option<String>)>,
+    /// Names no user wrote.
+    pub internal: Vec<String>,
+    /// What the clocks say at time 0.
+    pub clocks: Clocks,
+    /// What the shell around the executive needs to go on.
+    pub shell: Box<RawValue>,
+    /// The network as written, not merged.
+    pub network: Box<RawValue>,
+}
+
+/// What the clocks say at the time of a record, in microseconds. The time since boot is right whatever is done to the
+/// calendar, as long as the machine has not been booted again.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Clocks {
+    /// Which boot, if the machine tells.
+    pub boot: Option<String>,
+    /// Since then.
+    pub since_boot: i64,
+    /// Since 1970, by the calendar.
+    pub calendar: i64,
+}
+
+/// A journal that has been read.
+#[derive(Clone, Debug)]
+pub struct Journal {
+    /// What it says about the mission.
+    pub start: Start,
+    /// All lines after the first.
+    pub lines: Vec<Line>,
+    /// How many bytes of the file are right; what follows was torn.
+    pub length: usize,
+    /// How many bytes are torn.
+    pub torn: usize,
+    /// The checksum of the last line, for the next one.
+    pub checksum: u32,
+}
+
+/// What is wrong with a journal.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BadJournal {
+    /// The line, from 1.
+    pub line: usize,
+    /// What is wrong there.
+    pub message: String,
+}
+
+impl fmt::Display for BadJournal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "line {}: {}", self.line, self.message)
+    }
+}
+
+impl std::error::Error for BadJournal {}
+
+/// Writes a line to follow one with a checksum (0 for the first), and returns it with its own checksum.
+pub fn write(line: &Line, before: u32) -> (String, u32) {
+    let text = serde_json::to_string(line)
+        .unwrap_or_else(|error| unreachable!("a line has only strings and numbers: {error}"));
+    let checksum = checksum(before, text.as_bytes());
+    (format!("{checksum:08x} {text}\n"), checksum)
+}
+
+/// Reads a journal.
+///
+/// # Errors
+/// A line that is damaged, unless it is the last one: that was torn, and is left out.
+pub fn read(bytes: &[u8]) -> Result<Journal, BadJournal> {
+    let mut lines = Vec::new();
+    let mut before = 0;
+    let mut at = 0;
+    while at < bytes.len() {
+        let end = bytes[at..].iter().position(|&byte| byte == b'\n').map(|length| at + length);
+        let line = end.ok_or("it has no end".to_string()).and_then(|end| read_line(&bytes[at..end], before));
+        match (line, end) {
+            (Ok((line, checksum)), Some(end)) => {
+                lines.push(line);
+                before = checksum;
+                at = end + 1;
+            }
+            // Nothing after it: it was being written when the machine or the process died.
+            (Err(_), end) if !lines.is_empty() && end.is_none_or(|end| end + 1 == bytes.len()) => break,
+            (Err(message), _) => return Err(BadJournal { line: lines.len() + 1, message }),
+            (Ok(_), None) => unreachable!("a line is read up to its end"),
+        }
+    }
+    let mut lines = lines.into_iter();
+    let start = match lines.next().map(|line| line.record) {
+        Some(Record::Start(start)) if start.format == FORMAT => *start,
+        Some(Record::Start(start)) => {
+            let message = format!("the format is `{}`; this kirk reads `{FORMAT}`", start.format);
+            return Err(BadJournal { line: 1, message });
+        }
+        Some(_) => return Err(BadJournal { line: 1, message: "it does not say what is executed".into() }),
+        None => return Err(BadJournal { line: 1, message: "there is nothing in it".into() }),
+    };
+    Ok(Journal { start, lines: lines.collect(), length: at, torn: bytes.len() - at, checksum: before })
+}
+
+/// True if a file looks like a journal.
+pub fn is_journal(bytes: &[u8]) -> bool {
+    bytes.len() > 9
+        && bytes[8] == b' '
+        && bytes[9] == b'{'
+        && bytes[..8].iter().all(|byte| byte.is_ascii_hexdigit())
+}
+
+fn read_line(bytes: &[u8], before: u32) -> Result<(Line, u32), String> {
+    if !is_journal(bytes) {
+        return Err("a line is a checksum of 8 digits, a blank and a JSON object; this is not".to_string());
+    }
+    let written = std::str::from_utf8(&bytes[..8]).ok().and_then(|text| u32::from_str_radix(text, 16).ok());
+    let found = checksum(before, &bytes[9..]);
+    if written != Some(found) {
+        return Err(format!(
+            "it is damaged, or a line before it is missing (its checksum is not {found:08x})"
+        ));
+    }
+    let line = serde_json::from_slice(&bytes[9..]).map_err(|error| error.to_string())?;
+    Ok((line, found))
+}
+
+fn checksum(before: u32, text: &[u8]) -> u32 {
+    let mut hasher = crc32fast::Hasher::new();
+    hasher.update(&before.to_be_bytes());
+    hasher.update(text);
+    hasher.finalize()
+}
+
+impl Start {
+    /// What is to be executed: a network as written, and a setup whose handovers are of its merged form.
+    pub fn new(
+        network: &Network,
+        setup: &Setup,
+        speed: f64,
+        clocks: Clocks,
+        shell: Box<RawValue>,
+        version: &str,
+    ) -> Start {
+        let names = network.events().iter().flat_map(|event| &event.names);
+        let internal = names.filter(|name| name.internal).map(|name| name.text.clone());
+        let text = json::write(network);
+        Start {
+            format: FORMAT.to_string(),
+            version: version.to_string(),
+            program: setup.program.clone(),
+            run: setup.run.clone(),
+            optimistic: setup.settings.strategy == Strategy::Optimistic,
+            lead: seconds(setup.settings.lead),
+            lateness: seconds(setup.settings.lateness),
+            patience: (seconds(setup.patience.first), seconds(setup.patience.most)),
+            speed,
+            handovers: setup.handovers.iter().map(|h| (h.name.clone(), h.companion.clone())).collect(),
+            internal: internal.collect(),
+            clocks,
+            shell,
+            network: RawValue::from_string(text)
+                .unwrap_or_else(|error| unreachable!("a network is written as JSON: {error}")),
+        }
+    }
+
+    /// The network as written.
+    ///
+    /// # Errors
+    /// A sentence that says what is wrong with it.
+    pub fn network(&self) -> Result<Network, String> {
+        let network = json::read(self.network.get()).map_err(|problems| problems[0].message.clone())?;
+        let flagged = |event: &Event| {
+            let internal = |text: &str| self.internal.iter().any(|name| name == text);
+            let name = |name: &Name| Name { internal: internal(&name.text), ..name.clone() };
+            Event { names: event.names.iter().map(name).collect() }
+        };
+        let events = network.events().iter().map(flagged).collect();
+        let (requirements, contingents) = (network.requirements().to_vec(), network.contingents().to_vec());
+        Network::new(network.name().to_string(), network.origin(), events, requirements, contingents)
+            .map_err(|errors| errors[0].to_string())
+    }
+
+    /// The executive at time 0.
+    ///
+    /// # Errors
+    /// A sentence that says why there is none.
+    pub fn executive(&self) -> Result<Executive, String> {
+        let plan = match Plan::new(&self.network()?) {
+            Ok(plan) => plan,
+            Err(NoPlan::Uncontrollable(_)) => return Err("its network is not controllable".to_string()),
+            Err(NoPlan::TooLarge) => return Err("its numbers are too large to compute with".to_string()),
+        };
+        let handover = |(name, companion): &(String, Option<String>)| {
+            let event = plan.network().find(name).ok_or(format!("there is no event `{name}`"))?;
+            Ok(Handover { event, name: name.clone(), companion: companion.clone() })
+        };
+        let handovers = self.handovers.iter().map(handover).collect::<Result<_, String>>()?;
+        let settings = Settings {
+            strategy: if self.optimistic { Strategy::Optimistic } else { Strategy::Buffer },
+            lead: self.lead.0,
+            lateness: self.lateness.0,
+            ..Settings::default()
+        };
+        let setup = Setup {
+            program: self.program.clone(),
+            run: self.run.clone(),
+            settings,
+            handovers,
+            patience: Patience { first: self.patience.0.0, most: self.patience.1.0 },
+        };
+        Ok(Executive::new(plan, setup))
+    }
+}
+
+impl Clocks {
+    /// How long after `earlier` these are, as far as the clocks can tell; `None` if they say it was before.
+    pub fn since(&self, earlier: &Clocks) -> Option<Duration> {
+        let micros = if self.boot.is_some() && self.boot == earlier.boot {
+            self.since_boot - earlier.since_boot
+        } else {
+            self.calendar - earlier.calendar
+        };
+        (micros >= 0).then(|| Duration::from_micros(micros))
+    }
+
+    /// True if the machine was booted in between, as far as one can tell.
+    pub fn rebooted_since(&self, earlier: &Clocks) -> bool {
+        self.boot.is_none() || self.boot != earlier.boot
+    }
+}
+
+impl Line {
+    /// A line at a time.
+    pub fn new(at: Time, record: Record) -> Line {
+        Line { at: seconds(Duration::from_micros(at.as_micros())), record }
+    }
+
+    /// Its time.
+    pub fn time(&self) -> Time {
+        Time::from_micros(self.at.0.as_micros())
+    }
+}

@@ -1,0 +1,178 @@
+//! The desk: where everybody outside of the loop hands in messages and asks how things are. Cheap to clone.
+//!
+//! What is certainly of no use (unknown events, events of ours, repeated news) is answered here, without a word to the
+//! loop, so no flood of it can delay a dispatch.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+
+use kirk_network::model::normal_name;
+use kirk_network::{EventId, Network, Time};
+use kirk_runtime::Rebuilt;
+use serde::Serialize;
+use tokio::sync::broadcast;
+
+use crate::clock::Clock;
+use crate::happening::Happening;
+
+/// Hands in messages.
+#[derive(Clone)]
+pub struct Desk {
+    inbox: SyncSender<Message>,
+    clock: Clock,
+    shared: Arc<Shared>,
+}
+
+struct Shared {
+    /// Every name, in lower case.
+    events: HashMap<String, EventId>,
+    /// For each event: it is Nature's.
+    contingent: Vec<bool>,
+    /// For each event: its news was accepted.
+    heard: Vec<AtomicBool>,
+    version: AtomicU64,
+    happenings: broadcast::Sender<Arc<Happening>>,
+}
+
+/// What reaches the loop.
+pub(crate) enum Message {
+    /// News of events, and who wants to know what became of it.
+    News { arrived: Time, events: Vec<(String, EventId)>, answer: AnswerNews, reply: Reply<AnswerNews> },
+    /// The driver confirmed a dispatch, `ago` seconds after it was executed if it says so.
+    Executed { id: String, ago: Option<f64> },
+    /// The driver failed.
+    Failed { id: String, reason: String },
+    /// The driver has something to say to people.
+    Warning(String),
+    /// A new plan is ready.
+    Rebuilt { from: Time, rebuilt: Rebuilt },
+    /// Somebody wants to know how things are.
+    State { reply: Reply<String> },
+    /// Somebody wants the mission to end.
+    Stop { reason: String },
+}
+
+/// Called once with the answer.
+pub type Reply<T> = Box<dyn FnOnce(T) + Send>;
+
+/// What became of news, event by event as they were named.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct AnswerNews {
+    /// Known now.
+    pub accepted: Vec<String>,
+    /// Of no use.
+    pub ignored: Vec<Ignored>,
+}
+
+/// News of no use.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Ignored {
+    /// The event, as it was named.
+    pub event: String,
+    /// Why it is of no use.
+    pub why: String,
+}
+
+/// How many messages may wait, and how many happenings a slow listener may be behind.
+const WAITING: usize = 4096;
+
+impl Desk {
+    pub(crate) fn new(network: &Network, clock: Clock) -> (Desk, Receiver<Message>) {
+        let (inbox, outbox) = sync_channel(WAITING);
+        let names = |event: EventId| network.events()[event.index()].names.iter().map(move |n| (n, event));
+        let events = network.event_ids().flat_map(names);
+        let shared = Shared {
+            events: events.map(|(name, event)| (name.text.to_lowercase(), event)).collect(),
+            contingent: network.event_ids().map(|event| network.link_of(event).is_some()).collect(),
+            heard: network.event_ids().map(|_| AtomicBool::new(false)).collect(),
+            version: AtomicU64::new(0),
+            happenings: broadcast::channel(WAITING).0,
+        };
+        (Desk { inbox, clock, shared: Arc::new(shared) }, outbox)
+    }
+
+    /// The clock of the mission.
+    pub fn clock(&self) -> &Clock {
+        &self.clock
+    }
+
+    /// News arrived just now, of events under any of their names. `reply` is called with what became of it, once it is
+    /// safe; at once if none of it is of use.
+    pub fn news(&self, names: Vec<String>, reply: Reply<AnswerNews>) {
+        let arrived = self.clock.now();
+        let mut answer = AnswerNews::default();
+        let mut events: Vec<(String, EventId)> = Vec::new();
+        for name in names {
+            let why = match self.shared.events.get(&normal_name(&name)) {
+                None => "there is no such event in this mission".to_string(),
+                Some(event) if !self.shared.contingent[event.index()] => {
+                    "it is not Nature's to decide: kirk dispatches it".to_string()
+                }
+                Some(event) if self.shared.heard[event.index()].load(Ordering::Acquire) => {
+                    "it was heard before".to_string()
+                }
+                Some(event) => {
+                    events.push((name, *event));
+                    continue;
+                }
+            };
+            answer.ignored.push(Ignored { event: name, why });
+        }
+        if events.is_empty() {
+            return reply(answer);
+        }
+        // If the loop is gone nobody is there to answer; whoever waits notices that the reply was dropped.
+        let _ = self.inbox.send(Message::News { arrived, events, answer, reply });
+    }
+
+    /// The execution as it stands, as `kirk-execution/1` in one line of JSON.
+    pub fn state(&self, reply: Reply<String>) {
+        let _ = self.inbox.send(Message::State { reply });
+    }
+
+    /// Changes whenever the state does.
+    pub fn version(&self) -> u64 {
+        self.shared.version.load(Ordering::Acquire)
+    }
+
+    /// Everything that happens from now on.
+    pub fn listen(&self) -> broadcast::Receiver<Arc<Happening>> {
+        self.shared.happenings.subscribe()
+    }
+
+    /// Ends the mission.
+    pub fn stop(&self, reason: String) {
+        let _ = self.inbox.send(Message::Stop { reason });
+    }
+
+    pub(crate) fn executed(&self, id: String, ago: Option<f64>) {
+        let _ = self.inbox.send(Message::Executed { id, ago });
+    }
+
+    pub(crate) fn failed(&self, id: String, reason: String) {
+        let _ = self.inbox.send(Message::Failed { id, reason });
+    }
+
+    pub(crate) fn warn(&self, text: String) {
+        let _ = self.inbox.send(Message::Warning(text));
+    }
+
+    pub(crate) fn rebuilt(&self, from: Time, rebuilt: Rebuilt) {
+        let _ = self.inbox.send(Message::Rebuilt { from, rebuilt });
+    }
+
+    pub(crate) fn set_version(&self, version: u64) {
+        self.shared.version.store(version, Ordering::Release);
+    }
+
+    pub(crate) fn set_heard(&self, event: EventId) {
+        self.shared.heard[event.index()].store(true, Ordering::Release);
+    }
+
+    pub(crate) fn tell(&self, happening: Happening) {
+        // Nobody may be listening.
+        let _ = self.shared.happenings.send(Arc::new(happening));
+    }
+}

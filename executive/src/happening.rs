@@ -1,0 +1,54 @@
+//! What happens in a mission, for those who watch: the stream of `GET /events`, the live timetable, the lines on a terminal.
+
+use kirk_network::json::Seconds;
+use kirk_runtime::{Execution, Row};
+use serde::Serialize;
+
+/// One thing that happened.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum Happening {
+    /// An event was handed over to the driver.
+    Sent {
+        /// When, in seconds after the start.
+        at: Seconds,
+        /// The event.
+        event: String,
+        /// The dispatch.
+        id: String,
+        /// When it was due.
+        due: Seconds,
+        /// 1 for the first.
+        attempt: u32,
+    },
+    /// An event was fixed: dispatched (and confirmed), observed, buffered, imagined. One row for each name.
+    Fixed {
+        /// When it was known, in seconds after the start.
+        at: Seconds,
+        /// As in the record of the execution.
+        rows: Vec<Row>,
+    },
+    /// The driver failed to execute an event; it is tried again while its window is open.
+    Failed {
+        /// When, in seconds after the start.
+        at: Seconds,
+        /// The dispatch.
+        id: String,
+        /// Why.
+        reason: String,
+    },
+    /// Something a person should know.
+    Warning {
+        /// When, in seconds after the start.
+        at: Seconds,
+        /// A sentence.
+        text: String,
+    },
+    /// The mission is over.
+    Over {
+        /// When, in seconds after the start.
+        at: Seconds,
+        /// The record.
+        execution: Execution,
+    },
+}

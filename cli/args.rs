@@ -1,5 +1,7 @@
 //! The command line.
 
+use std::path::PathBuf;
+
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 /// Compiles RMPL control programs to temporal networks with uncertainty, proves that they can always be executed (or
@@ -40,7 +42,11 @@ pub(crate) enum Color {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Compiles, proves and executes a mission, and prints its timetable.
-    Run(Run),
+    Run(Box<Run>),
+    /// Goes on with a mission that was interrupted, from its journal.
+    Resume(Resume),
+    /// Repeats a mission from its journal, bit for bit.
+    Replay(Replay),
     /// Prints all diagnostics and the verdict for each file.
     Check(Check),
     /// Prints what a mission is compiled to.
@@ -84,23 +90,123 @@ pub(crate) struct Run {
     #[arg(long)]
     pub(crate) simulate: bool,
     /// News of EVENT arrives at T seconds (repeatable).
-    #[arg(long, value_name = "EVENT@T")]
+    #[arg(long, value_name = "EVENT@T", requires = "simulate", help_heading = "Simulation")]
     pub(crate) observe: Vec<String>,
     /// A JSON object of event: time, as if each were given with --observe.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", requires = "simulate", help_heading = "Simulation")]
     pub(crate) observations: Option<String>,
     /// How Nature chooses durations and delays where the observations leave a choice.
-    #[arg(long, value_enum, default_value_t = Nature::Upper)]
+    #[arg(long, value_enum, default_value_t = Nature::Upper, requires = "simulate", help_heading = "Simulation")]
     pub(crate) nature: Nature,
     /// The seed of `--nature random`.
-    #[arg(long, default_value_t = 0, value_name = "N")]
+    #[arg(long, default_value_t = 0, value_name = "N", requires = "simulate", help_heading = "Simulation")]
     pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) live: Live,
     /// What to do with news that says more than the plan assumed.
     #[arg(long, value_enum, default_value_t = StrategyName::Optimistic)]
     pub(crate) strategy: StrategyName,
     /// The same as --strategy optimistic, which is the default.
     #[arg(long, conflicts_with = "strategy")]
     pub(crate) optimistic: bool,
+    /// Also print the events that no user wrote.
+    #[arg(long)]
+    pub(crate) internal: bool,
+    /// How to print the result.
+    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
+    pub(crate) format: TextOrJson,
+}
+
+/// How a mission is executed in real time.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Real time")]
+pub(crate) struct Live {
+    /// A shell command for each activity that starts: the first `~A` is its start, the second its end, spelt
+    /// `+UPLOAD-A::START+`. Exit status 0 confirms that it has started.
+    #[arg(long, value_name = "CMD", conflicts_with_all = ["simulate", "driver", "driver_url"])]
+    pub(crate) driver_command: Option<String>,
+    /// A child process that speaks JSON in lines: `stdio:CMD`.
+    #[arg(long, value_name = "stdio:CMD", conflicts_with_all = ["simulate", "driver_url"])]
+    pub(crate) driver: Option<String>,
+    /// An HTTP address to which each activity that starts is posted.
+    #[arg(long, value_name = "URL", conflicts_with = "simulate")]
+    pub(crate) driver_url: Option<String>,
+    /// Which events the driver hears of.
+    #[arg(long, value_enum, default_value_t = DriverEvents::Starts, value_name = "WHICH", conflicts_with = "simulate")]
+    pub(crate) driver_events: DriverEvents,
+    /// How many seconds the driver may take for an answer.
+    #[arg(long, default_value = "10", value_name = "S", value_parser = positive, conflicts_with = "simulate")]
+    pub(crate) driver_timeout: f64,
+    /// A shell command that is run if the mission fails (KIRK_REASON, KIRK_EVENT, KIRK_TIME, KIRK_DETAIL, KIRK_PROGRAM).
+    #[arg(long, value_name = "CMD", conflicts_with = "simulate")]
+    pub(crate) on_failure: Option<String>,
+    /// Hear news over HTTP on this port; 0 takes a free one.
+    #[arg(short = 'p', long, value_name = "PORT", conflicts_with = "simulate")]
+    pub(crate) port: Option<u16>,
+    /// Where to listen; anything but this machine alone needs --token-file.
+    #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1", requires = "port")]
+    pub(crate) bind: String,
+    /// A file with the word that whoever brings news has to know (`Authorization: Bearer WORD`).
+    #[arg(long, value_name = "FILE", requires = "port")]
+    pub(crate) token_file: Option<String>,
+    /// An event may be handed over up to so many seconds before its time.
+    #[arg(long, default_value = "0", value_name = "S", value_parser = not_negative, conflicts_with = "simulate")]
+    pub(crate) tolerance: f64,
+    /// Run the clock so many times faster: rehearsals, tests.
+    #[arg(long, default_value = "1", value_name = "X", value_parser = positive, conflicts_with = "simulate")]
+    pub(crate) speed: f64,
+    /// Record everything there, so that `kirk resume` can go on after whatever interrupts the mission.
+    #[arg(long, value_name = "FILE", conflicts_with = "simulate")]
+    pub(crate) journal: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum DriverEvents {
+    /// The starts of activities.
+    Starts,
+    /// Also the ends that kirk decides itself.
+    All,
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if number >= 0.0 && number <= 1e9 => Ok(number),
+        Ok(_) => Err("expected a number from 0 to 1000000000".to_string()),
+        Err(_) => Err("expected a number, such as 1.5".to_string()),
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match not_negative(text)? {
+        number if number >= 1e-6 => Ok(number),
+        _ => Err("expected a number greater than 0".to_string()),
+    }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Resume {
+    /// The journal (`kirk run --journal FILE`).
+    #[arg(value_name = "FILE")]
+    pub(crate) journal: PathBuf,
+    /// What time it is in the mission, in seconds after its start, if the clocks cannot tell.
+    #[arg(long, value_name = "S", value_parser = not_negative)]
+    pub(crate) at: Option<f64>,
+    /// Also print the events that no user wrote.
+    #[arg(long)]
+    pub(crate) internal: bool,
+    /// How to print the result.
+    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
+    pub(crate) format: TextOrJson,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Replay {
+    /// The journal (`kirk run --journal FILE`).
+    #[arg(value_name = "FILE")]
+    pub(crate) journal: PathBuf,
+    /// Repeat it so many times faster than it was; at once if not given.
+    #[arg(long, value_name = "X", value_parser = positive)]
+    pub(crate) speed: Option<f64>,
     /// Also print the events that no user wrote.
     #[arg(long)]
     pub(crate) internal: bool,

@@ -6,6 +6,7 @@ mod args;
 mod check;
 mod compile;
 mod conflict;
+mod execute;
 mod explain;
 mod fmt;
 mod generate;
@@ -13,10 +14,12 @@ mod input;
 mod json;
 mod news;
 mod output;
+mod replay;
 mod report;
 mod run;
 mod timetable;
 mod verify;
+mod watch;
 
 use std::process::ExitCode;
 
@@ -40,6 +43,8 @@ fn main() -> ExitCode {
 fn execute(arguments: &Arguments) -> Status {
     let result = match &arguments.command {
         Command::Run(run) => run::run(run, &arguments.common),
+        Command::Resume(resume) => execute::resume(resume, &arguments.common),
+        Command::Replay(replay) => replay::replay(replay, &arguments.common),
         Command::Check(check) => check::check(check, &arguments.common),
         Command::Compile(compile) => compile::compile(compile, &arguments.common),
         Command::Verify(verify) => verify::verify(verify, &arguments.common),

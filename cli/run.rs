@@ -16,18 +16,15 @@ use serde::de::{Deserializer, MapAccess, Visitor};
 use crate::args::{Common, Nature, Run, StrategyName, TextOrJson};
 use crate::check::too_large;
 use crate::conflict;
+use crate::execute;
 use crate::input::{load_all, read};
 use crate::json::line;
 use crate::news::treatment;
-use crate::output::{Status, complain, eprint, print};
+use crate::output::{Status, eprint, print};
 use crate::report::Reporter;
 use crate::timetable::timetable;
 
 pub(crate) fn run(arguments: &Run, common: &Common) -> io::Result<Status> {
-    if !arguments.simulate {
-        complain("kirk cannot execute in real time yet; `--simulate` executes the mission in virtual time");
-        return Ok(Status::Wrong);
-    }
     let mut input = load_all(&arguments.files, &arguments.selection);
     let plan = match input.network.as_ref().map(Plan::new) {
         None => None,
@@ -61,6 +58,9 @@ pub(crate) fn run(arguments: &Run, common: &Common) -> io::Result<Status> {
     };
     if common.verbose {
         eprint(&treatment(plan.network()))?;
+    }
+    if !arguments.simulate {
+        return execute::execute(arguments, common, &input, plan);
     }
     let given = Observations::collect(arguments, plan.network());
     if !given.diagnostics.is_empty() {

@@ -24,7 +24,8 @@ pub(crate) fn timetable(execution: &Execution) -> String {
     text
 }
 
-fn cells(row: &Row) -> [String; 3] {
+/// Time, event and how.
+pub(crate) fn cells(row: &Row) -> [String; 3] {
     let time = row.time.map_or("-".to_string(), |time| time.0.to_string());
     let mut how = row.how.word().to_string();
     let heard = row.observed.flatten();

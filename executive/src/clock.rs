@@ -22,9 +22,27 @@ impl Clock {
         Clock { anchor: since_boot(), at, speed }
     }
 
+    /// A clock that will stand at zero in a while; before that it is time zero, too.
+    pub fn starting_in(wait: Real, speed: f64) -> Clock {
+        let anchor = since_boot().saturating_add(wait.as_micros() as i64);
+        Clock { anchor, at: Time::ZERO, speed }
+    }
+
+    /// How long it is, really, until the anchor.
+    pub fn until_anchor(&self) -> Real {
+        Real::from_micros((self.anchor - since_boot()).max(0) as u64)
+    }
+
+    /// What the clocks of the machine say at the anchor.
+    pub fn anchor(&self) -> Clocks {
+        let now = clocks();
+        let ahead = self.anchor - now.since_boot;
+        Clocks { since_boot: self.anchor, calendar: now.calendar + ahead, ..now }
+    }
+
     /// Mission time now.
     pub fn now(&self) -> Time {
-        let passed = (since_boot() - self.anchor) as f64 * self.speed;
+        let passed = (since_boot() - self.anchor).max(0) as f64 * self.speed;
         Time::from_micros(self.at.as_micros().saturating_add(passed as i64))
     }
 

@@ -3,8 +3,21 @@
 //! mod tour comes here
 mod clock;
 mod desk;
+mod driver;
+mod failure;
+mod file;
 mod happening;
+mod http;
+mod lateness;
+mod mission;
+mod run;
+mod signals;
 
 pub use clock::{Clock, clocks};
 pub use desk::{AnswerNews, Desk, Ignored, Reply};
+pub use driver::Driver;
 pub use happening::Happening;
+pub use lateness::Lateness;
+pub use mission::{Http, Mission, Options, Ready, Resumption, begin, resume};
+pub use run::Ended;
+pub use signals::stop_on_signals;

@@ -300,14 +300,16 @@ impl Dispatcher {
         Some(self.rebuild())
     }
 
-    /// Goes on with a new plan, unless something has happened since it was asked for; then it has to be asked for again.
-    /// Returns whether it was taken.
+    /// Goes on with a new plan. Returns false if it came too late: something has happened since, and it has to be asked for
+    /// again.
     pub fn handle_rebuilt(&mut self, rebuilt: Rebuilt) -> bool {
-        if rebuilt.version != self.version {
+        let current = rebuilt.version == self.version;
+        if current {
+            self.adopt(rebuilt);
+        } else {
             self.stale = true;
-            return false;
         }
-        self.adopt(rebuilt)
+        current
     }
 
     /// The next event to be fixed, however it came to be; call until there is none.
@@ -321,6 +323,11 @@ impl Dispatcher {
         let link = self.reduction.stnu.links.iter().find(|link| link.contingent == node)?;
         let start = self.agenda.executed(link.activation)?;
         Some(Time::from_micros(start.saturating_add(link.upper)))
+    }
+
+    /// True if no news of an event is waited for.
+    pub fn is_hidden(&self, event: EventId) -> bool {
+        self.reduction.places[event.index()].heard_by != Some(event)
     }
 
     /// True from the dispatch of an event to its confirmation.
@@ -407,6 +414,7 @@ impl Dispatcher {
         Rebuild::new(network, Time::from_micros(self.now), known, self.version)
     }
 
+    /// Follows a new plan; false if there is none.
     fn adopt(&mut self, rebuilt: Rebuilt) -> bool {
         let Some((reduction, net)) = rebuilt.plan else {
             // In a delayed chain the reduction may be too careful to see that there is a way. Then the old plan stands.

@@ -11,11 +11,11 @@ use kirk_network::{Duration, EventId, Network, Time};
 
 use crate::activity::Handover;
 use crate::dispatcher::{Dispatcher, Reception, Settings};
-use crate::execution::{Execution, Failure, Outcome, at};
+use crate::execution::{Execution, Failure, Outcome, Row, at};
 use crate::order::{Order, Patience, State};
 use crate::plan::Plan;
 use crate::rebuild::{Rebuild, Rebuilt};
-use crate::simulate::{missed_window, record};
+use crate::record::{missed_window, record, row};
 
 /// An executive in the middle of its mission.
 #[derive(Clone, Debug)]
@@ -263,11 +263,11 @@ impl Executive {
         if self.over { None } else { self.dispatcher.poll_rebuild(now) }
     }
 
-    /// Goes on with a new plan. Returns whether it was taken.
+    /// Goes on with a new plan. Returns false if it came too late to be of use.
     pub fn handle_rebuilt(&mut self, now: Time, rebuilt: Rebuilt) -> bool {
-        let taken = !self.over && self.dispatcher.handle_rebuilt(rebuilt);
+        let current = !self.over && self.dispatcher.handle_rebuilt(rebuilt);
         self.handle_timeout(now);
-        taken
+        current
     }
 
     /// What is to be done or told next.
@@ -281,10 +281,7 @@ impl Executive {
             return None;
         }
         let retry = self.orders.iter().filter_map(|order| order.state.wakes());
-        let surely = self.unannounced.iter().filter_map(|&event| {
-            let (_, high) = self.dispatcher.happened(event)?;
-            Some(Time::from_micros(high))
-        });
+        let surely = self.unannounced.iter().filter_map(|&event| surely(&self.dispatcher, event));
         let soonest = retry.chain(surely).min();
         soonest.into_iter().chain(self.dispatcher.poll_timeout()).min()
     }
@@ -300,6 +297,14 @@ impl Executive {
             (None, false) => Outcome::Running,
         };
         execution
+    }
+
+    /// The rows of one event in the record, one for each name a user wrote. Empty if it is not known.
+    pub fn rows(&self, event: EventId) -> Vec<Row> {
+        let happened = self.dispatcher.happened(event);
+        let Some((_, row)) = row(&self.dispatcher, event, happened, None) else { return Vec::new() };
+        let names = self.network().events()[event.index()].names.iter().filter(|name| !name.internal);
+        names.map(|name| Row { event: name.text.clone(), ..row.clone() }).collect()
     }
 
     /// When the last thing happened, or surely had.
@@ -358,15 +363,10 @@ impl Executive {
         while let Some(event) = self.dispatcher.poll_fixed() {
             self.outputs.push_back(Output::Fixed(event));
         }
-        let surely = |dispatcher: &Dispatcher, event: EventId| {
-            let fixed = dispatcher.known(event).fixed.map(|(time, _)| time);
-            let high = dispatcher.happened(event).map(|(_, high)| Time::from_micros(high));
-            fixed.or(high.filter(|&high| high <= now))
-        };
         for event in std::mem::take(&mut self.unannounced) {
             match surely(&self.dispatcher, event) {
-                Some(time) => self.hand_over(event, time, now),
-                None => self.unannounced.push(event),
+                Some(time) if time <= now => self.hand_over(event, time, now),
+                _ => self.unannounced.push(event),
             }
         }
         for at in 0..self.orders.len() {
@@ -462,5 +462,15 @@ impl Executive {
         self.over = true;
         self.changes += 1;
         self.outputs.push_back(Output::Over);
+    }
+}
+
+/// When a contingent event that starts an activity counts as happened: when it is taken, and if it is not waited for, when
+/// it surely has.
+fn surely(dispatcher: &Dispatcher, event: EventId) -> Option<Time> {
+    let high = || dispatcher.happened(event).map(|(_, high)| Time::from_micros(high));
+    match dispatcher.known(event).fixed {
+        Some((time, _)) => Some(time),
+        None => high().filter(|_| dispatcher.is_hidden(event)),
     }
 }

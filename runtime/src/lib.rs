@@ -53,6 +53,7 @@ pub mod nature;
 mod order;
 pub mod plan;
 pub mod rebuild;
+mod record;
 pub mod replay;
 pub mod simulate;
 pub mod verify;

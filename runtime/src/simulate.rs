@@ -3,13 +3,13 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use kirk_network::json::Seconds;
-use kirk_network::{Duration, EventId, Network, Time};
+use kirk_network::{EventId, Time};
 
-use crate::dispatcher::{Dispatcher, Missed, Reception, Settings, Strategy};
-use crate::execution::{Execution, FORMAT, Failure, How, Outcome, Row, at};
+use crate::dispatcher::{Dispatcher, Reception, Settings, Strategy};
+use crate::execution::Execution;
 use crate::nature::{Impossible, Nature, Temper};
 use crate::plan::Plan;
+use crate::record::record;
 
 /// What to simulate.
 #[derive(Clone, Debug, Default)]
@@ -82,68 +82,5 @@ pub fn simulate(plan: &Plan, program: &str, simulation: &Simulation) -> Result<E
 fn plan_anew(dispatcher: &mut Dispatcher, now: Time) {
     while let Some(rebuild) = dispatcher.poll_rebuild(now) {
         dispatcher.handle_rebuilt(rebuild.run());
-    }
-}
-
-/// The record of an execution up to `end`; `truth` where it is known.
-pub(crate) fn record(
-    dispatcher: &Dispatcher,
-    program: &str,
-    end: Time,
-    internal: bool,
-    truth: &[Option<Time>],
-) -> Execution {
-    let network = dispatcher.network();
-    let mut rows: Vec<((i64, u32), Row)> = Vec::new();
-    let all_happened = dispatcher.happened_by(end);
-    for event in network.event_ids() {
-        let known = dispatcher.known(event);
-        let contingent = network.link_of(event).is_some();
-        let happened = all_happened[event.index()];
-        let (time, how, order) = match known.fixed {
-            Some((time, how)) => (Some(at(time)), how, (time.as_micros(), known.sequence)),
-            None if contingent => (None, How::Never, (happened.map_or(i64::MAX, |(_, high)| high), u32::MAX)),
-            // Not executed: the execution failed before.
-            None => continue,
-        };
-        let interval = |(low, high): (i64, i64)| (at(Time::from_micros(low)), at(Time::from_micros(high)));
-        let row = Row {
-            event: String::new(),
-            time,
-            how,
-            observed: contingent.then(|| known.observed.map(at)),
-            happened: happened.filter(|_| contingent).map(interval),
-            truth: truth.get(event.index()).copied().flatten().map(at),
-        };
-        for name in &network.events()[event.index()].names {
-            if internal || !name.internal {
-                rows.push((order, Row { event: name.text.clone(), ..row.clone() }));
-            }
-        }
-    }
-    rows.sort_by_key(|(order, _)| *order);
-    let failure = dispatcher.missed().map(|missed| missed_window(network, missed));
-    Execution {
-        format: FORMAT.to_string(),
-        program: program.to_string(),
-        outcome: if failure.is_some() { Outcome::Failed } else { Outcome::Completed },
-        failure,
-        makespan: at(end),
-        seed: None,
-        rows: rows.into_iter().map(|(_, row)| row).collect(),
-    }
-}
-
-pub(crate) fn missed_window(network: &Network, missed: Missed) -> Failure {
-    let event = network.label(missed.event).to_string();
-    let detail = format!(
-        "`{event}` could be executed until {} at the latest, but what it waits for came at {}",
-        missed.latest, missed.time
-    );
-    Failure {
-        event,
-        time: Seconds(Duration::from_micros(missed.time.as_micros())),
-        reason: "missed-window".into(),
-        detail,
     }
 }

@@ -1,0 +1,174 @@
+//! `kirk run` in real time, and `kirk resume`.
+
+use std::io;
+
+use kirk_compiler::episode::{Episode, Kind};
+use kirk_executive::{Driver, Ended, Http, Mission, Options, Ready, Resumption, begin};
+use kirk_network::{Duration, Time};
+use kirk_runtime::{Execution, Outcome, Plan, Scope, handovers};
+
+use crate::args::{Common, DriverEvents, Live, Resume, Run, StrategyName, TextOrJson};
+use crate::input::Input;
+use crate::json::line;
+use crate::output::{Status, complain, print, remark};
+use crate::timetable::timetable;
+use crate::watch;
+
+/// Executes a proven mission in real time.
+pub(crate) fn execute(arguments: &Run, common: &Common, input: &Input, plan: Plan) -> io::Result<Status> {
+    let Some(network) = &input.network else { return Ok(Status::Wrong) };
+    let live = &arguments.live;
+    let options = match options(arguments) {
+        Ok(options) => options,
+        Err(message) => return wrong(&message),
+    };
+    let activities = input.compilation.as_ref().and_then(|compilation| compilation.episodes.as_ref());
+    let activities = activities.map(activities_of);
+    let scope = match live.driver_events {
+        DriverEvents::Starts => Scope::Starts,
+        DriverEvents::All => Scope::All,
+    };
+    let handovers = handovers(plan.network(), activities.as_deref(), scope);
+    if options.driver.is_some() && handovers.is_empty() && !common.quiet {
+        remark(
+            "warning: the driver will hear of nothing: no event starts an activity (`x:start` with an `x:end`); \
+             `--driver-events all` hands over every event of a network",
+        );
+    }
+    let program = input.program(&arguments.selection);
+    let mission = Mission { program, network: network.clone(), plan, handovers };
+    match begin(mission, options, live.journal.as_deref(), false) {
+        Ok(ready) => {
+            finish(ready, arguments.files.iter().any(|file| file == "-"), Show::of_run(arguments), common)
+        }
+        Err(message) => wrong(&message),
+    }
+}
+
+/// Goes on with a mission that was interrupted.
+pub(crate) fn resume(arguments: &Resume, common: &Common) -> io::Result<Status> {
+    let at = arguments.at.map(|seconds| Time::from_micros((seconds * 1e6) as i64));
+    let note = |text: String| {
+        if !common.quiet {
+            remark(&text);
+        }
+    };
+    let show = Show { internal: arguments.internal, format: arguments.format };
+    match kirk_executive::resume(&arguments.journal, at, false, note) {
+        Ok(Resumption::Ready(ready)) => finish(*ready, false, show, common),
+        Ok(Resumption::Over(execution)) => {
+            if !common.quiet {
+                remark("the mission is over; there is nothing to go on with");
+            }
+            show.execution(&execution)
+        }
+        Err(message) => wrong(&message),
+    }
+}
+
+/// How the result is shown.
+#[derive(Clone, Copy)]
+pub(crate) struct Show {
+    pub(crate) internal: bool,
+    pub(crate) format: TextOrJson,
+}
+
+impl Show {
+    fn of_run(arguments: &Run) -> Show {
+        Show { internal: arguments.internal, format: arguments.format }
+    }
+
+    /// Prints an execution, and says by the exit status how it ended.
+    pub(crate) fn execution(self, execution: &Execution) -> io::Result<Status> {
+        match self.format {
+            TextOrJson::Json => print(&line(execution)?)?,
+            TextOrJson::Text => print(&timetable(execution))?,
+        }
+        Ok(if execution.outcome == Outcome::Completed { Status::Yes } else { Status::No })
+    }
+}
+
+fn finish(ready: Ready, stdin_taken: bool, show: Show, common: &Common) -> io::Result<Status> {
+    if let (Some(address), false) = (ready.address(), common.quiet) {
+        remark(&format!("news is heard at http://{address}/"));
+    }
+    let desk = ready.desk();
+    kirk_executive::stop_on_signals(desk.clone());
+    let watching = (!common.quiet).then(|| watch::print(&desk));
+    if !stdin_taken {
+        watch::read_lines(desk);
+    }
+    let ended = ready.run(show.internal);
+    if let Some(watching) = watching {
+        // It ends when it has said that the mission is over.
+        let _ = watching.join();
+    }
+    if !common.quiet {
+        say_lateness(&ended);
+    }
+    show.execution(&ended.execution)
+}
+
+fn say_lateness(ended: &Ended) {
+    let percentile = |percent| ended.lateness.percentile(percent).unwrap_or(Duration::ZERO);
+    if ended.lateness.count() > 0 {
+        remark(&format!(
+            "{} dispatches, late by {} s in the median, {} s at the 99th percentile, {} s at most",
+            ended.lateness.count(),
+            percentile(50),
+            percentile(99),
+            percentile(100)
+        ));
+    }
+    if ended.stopped.is_some() {
+        remark("if it has a journal, `kirk resume` goes on with it");
+    }
+}
+
+fn wrong(message: &str) -> io::Result<Status> {
+    complain(message);
+    Ok(Status::Wrong)
+}
+
+fn options(arguments: &Run) -> Result<Options, String> {
+    let live = &arguments.live;
+    let driver = match (&live.driver_command, &live.driver, &live.driver_url) {
+        (Some(template), ..) => Some(Driver::Command(template.clone())),
+        (_, Some(driver), _) => match driver.strip_prefix("stdio:").map(str::trim) {
+            Some(command) if !command.is_empty() => Some(Driver::Stdio(command.to_string())),
+            _ => {
+                return Err(format!(
+                    "`--driver {driver}`: expected `stdio:` and a command, such as `stdio:./robot.py`"
+                ));
+            }
+        },
+        (.., Some(url)) => Some(Driver::Url(url.clone())),
+        _ => None,
+    };
+    let http = live.port.map(|port| {
+        let Live { bind, token_file, .. } = live;
+        Http { bind: bind.clone(), port, token_file: token_file.clone() }
+    });
+    Ok(Options {
+        optimistic: arguments.strategy == StrategyName::Optimistic,
+        speed: live.speed,
+        tolerance: live.tolerance,
+        driver,
+        driver_timeout: live.driver_timeout,
+        http,
+        on_failure: live.on_failure.clone(),
+    })
+}
+
+/// The names of the activities of a mission: every occurrence of a primitive program.
+fn activities_of(episode: &Episode) -> Vec<String> {
+    let mut names = Vec::new();
+    let mut open = vec![episode];
+    while let Some(episode) = open.pop() {
+        if episode.kind == Kind::Primitive && !episode.internal {
+            names.push(episode.name.clone());
+        }
+        open.extend(&episode.parts);
+    }
+    names
+}

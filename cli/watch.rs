@@ -1,0 +1,87 @@
+//! A mission in real time without a screen: a line for everything that happens, and news from lines of standard input.
+
+use std::io::BufRead;
+use std::thread::JoinHandle;
+
+use kirk_executive::{AnswerNews, Desk, Happening};
+use serde::Deserialize;
+
+use crate::output::remark;
+use crate::timetable::cells;
+
+/// Prints what happens to standard error, until the mission is over.
+pub(crate) fn print(desk: &Desk) -> JoinHandle<()> {
+    let mut happenings = desk.listen();
+    std::thread::spawn(move || {
+        loop {
+            match happenings.blocking_recv() {
+                Ok(happening) => {
+                    lines(&happening).iter().for_each(|line| remark(line));
+                    if matches!(*happening, Happening::Over { .. }) {
+                        return;
+                    }
+                }
+                Err(tokio::sync::broadcast::error::RecvError::Lagged(missed)) => {
+                    remark(&format!("          ({missed} lines not shown)"));
+                }
+                Err(tokio::sync::broadcast::error::RecvError::Closed) => return,
+            }
+        }
+    })
+}
+
+fn lines(happening: &Happening) -> Vec<String> {
+    match happening {
+        Happening::Sent { at, event, attempt, .. } if *attempt > 1 => {
+            vec![format!("{:>10}  {event}  handed over again, attempt {attempt}", at.0)]
+        }
+        Happening::Sent { .. } | Happening::Over { .. } => Vec::new(),
+        Happening::Fixed { rows, .. } => rows
+            .iter()
+            .map(|row| {
+                let [time, event, how] = cells(row);
+                format!("{time:>10}  {event}  {how}")
+            })
+            .collect(),
+        Happening::Failed { at, id, reason } => {
+            let event = id.split_once('/').map_or(id.as_str(), |(_, event)| event);
+            vec![format!("{:>10}  {event}  not confirmed: {reason}", at.0)]
+        }
+        Happening::Warning { at, text } => vec![format!("{:>10}  {text}", at.0)],
+    }
+}
+
+/// Takes every line of standard input as news: an event, or what the original's `POST /` takes.
+pub(crate) fn read_lines(desk: Desk) {
+    std::thread::spawn(move || {
+        for line in std::io::stdin().lock().lines() {
+            let Ok(line) = line else { return };
+            match names(line.trim()) {
+                Ok(names) if names.is_empty() => {}
+                Ok(names) => desk.news(names, Box::new(said)),
+                Err(message) => remark(&message),
+            }
+        }
+    });
+}
+
+#[derive(Deserialize)]
+struct Body {
+    #[serde(rename = "event-ids")]
+    events: Vec<String>,
+}
+
+fn names(line: &str) -> Result<Vec<String>, String> {
+    if line.starts_with('{') {
+        return serde_json::from_str(line).map(|Body { events }| events).map_err(|error| {
+            format!("`{line}` is no news: {error}; expected an event, or {{\"event-ids\": [...]}}")
+        });
+    }
+    Ok(line.split_whitespace().map(str::to_string).collect())
+}
+
+fn said(answer: AnswerNews) {
+    for ignored in answer.ignored {
+        remark(&format!("            {}  ignored: {}", ignored.event, ignored.why));
+    }
+}

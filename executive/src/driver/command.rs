@@ -1,0 +1,143 @@
+//! The original's way: a shell command for each event, whose exit status says whether the event was executed.
+
+use std::process::Stdio;
+
+use kirk_runtime::{Handover, Sending, original_spelling};
+use rustix::process::{Pid, Signal, kill_process_group};
+use tokio::process::{Child, Command};
+use tokio::sync::mpsc::UnboundedReceiver;
+
+use super::{Order, Treatment, next};
+use crate::desk::Desk;
+
+/// What may be in a name that is put between quotes which are not ours.
+fn is_harmless(character: char) -> bool {
+    character.is_ascii_alphanumeric() || "_+:./#-".contains(character)
+}
+
+pub(super) fn check(template: &str, handovers: &[Handover]) -> Result<(), String> {
+    let places = places(template);
+    if places > 2 {
+        return Err(format!(
+            "the driver command has {places} times `~A`; there are two things to put there, the event and its companion"
+        ));
+    }
+    let names = handovers.iter().flat_map(|handover| [Some(&handover.name), handover.companion.as_ref()]);
+    let odd: Vec<String> = names
+        .flatten()
+        .filter(|name| !name.chars().all(is_harmless))
+        .map(|name| format!("`{name}`"))
+        .collect();
+    if odd.is_empty() {
+        return Ok(());
+    }
+    Err(format!(
+        "a shell could take the names {} for something else: a driver command is given only names of letters, digits and \
+         `_+:./#-`. Rename the programs, or use `--driver stdio:...` or `--driver-url`",
+        odd.join(", ")
+    ))
+}
+
+pub(super) async fn run(
+    template: String,
+    treatment: Treatment,
+    mut inbox: UnboundedReceiver<Order>,
+    desk: Desk,
+) {
+    let local = tokio::task::LocalSet::new();
+    let work = async {
+        while let Some(sending) = next(&mut inbox).await {
+            let (template, desk) = (template.clone(), desk.clone());
+            tokio::task::spawn_local(async move {
+                match attempt(&template, &sending, treatment).await {
+                    Ok(()) => desk.executed(sending.id, None),
+                    Err(reason) => desk.failed(sending.id, reason),
+                }
+            });
+        }
+    };
+    local.run_until(work).await;
+}
+
+async fn attempt(template: &str, sending: &Sending, treatment: Treatment) -> Result<(), String> {
+    let event = original_spelling(&sending.name);
+    let companion = sending.companion.as_deref().map_or("NIL".to_string(), original_spelling);
+    let mut command = shell(&fill(template, &event, &companion), treatment.silent);
+    command.env("KIRK_EVENT", event).env("KIRK_COMPANION", companion).env("KIRK_DISPATCH_ID", &sending.id);
+    let mut child = command.spawn().map_err(|error| format!("the shell cannot be started: {error}"))?;
+    match tokio::time::timeout(treatment.limit, child.wait()).await {
+        Ok(Ok(status)) if status.success() => Ok(()),
+        Ok(Ok(status)) => Err(format!("the command ended with {status}")),
+        Ok(Err(error)) => Err(format!("the command is lost: {error}")),
+        Err(_) => {
+            kill(&child);
+            let _ = child.wait().await;
+            Err(format!("the command took longer than {} s", treatment.limit.as_secs_f64()))
+        }
+    }
+}
+
+/// A command of the shell, in a process group of its own. What it prints goes to standard error, as standard output is ours.
+pub(crate) fn shell(text: &str, silent: bool) -> Command {
+    let mut command = Command::new("sh");
+    let output = || if silent { Stdio::null() } else { Stdio::from(std::io::stderr()) };
+    command.arg("-c").arg(text).stdin(Stdio::null()).stdout(output()).stderr(output());
+    command.process_group(0).kill_on_drop(false);
+    command
+}
+
+/// Ends a command and all it has started.
+pub(crate) fn kill(child: &Child) {
+    if let Some(pid) = child.id().and_then(|id| Pid::from_raw(id as i32)) {
+        let _ = kill_process_group(pid, Signal::KILL);
+    }
+}
+
+/// How often there is something to fill in.
+fn places(template: &str) -> usize {
+    template.replace("~~", "").to_uppercase().matches("~A").count()
+}
+
+/// Fills in the first two `~A`; `~~` is `~`, as for the original.
+fn fill(template: &str, event: &str, companion: &str) -> String {
+    let mut values = [event, companion].into_iter();
+    let mut text = String::new();
+    let mut rest = template;
+    while let Some(at) = rest.find('~') {
+        text.push_str(&rest[..at]);
+        let after = &rest[at + 1..];
+        match after.chars().next() {
+            Some('A' | 'a') => {
+                text.push_str(values.next().unwrap_or_default());
+                rest = &after[1..];
+            }
+            Some('~') => {
+                text.push('~');
+                rest = &after[1..];
+            }
+            _ => {
+                text.push('~');
+                rest = after;
+            }
+        }
+    }
+    text + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_event_and_its_companion_are_filled_in_and_the_rest_is_left_alone() {
+        let field = r#"curl -d '{"start_cmd":"~A","end_cmd":"~a"}' ~/robot "$(cat ~~x)""#;
+        assert_eq!(
+            fill(field, "+UPLOAD-A::START+", "+UPLOAD-A::END+"),
+            r#"curl -d '{"start_cmd":"+UPLOAD-A::START+","end_cmd":"+UPLOAD-A::END+"}' ~/robot "$(cat ~x)""#
+        );
+        assert_eq!(fill("robot ~A", "E", "C"), "robot E");
+        assert_eq!(fill("robot", "E", "C"), "robot");
+        assert!(check("~A ~A ~A", &[]).is_err());
+        assert!(check("~A ~~A ~A", &[]).is_ok());
+    }
+}

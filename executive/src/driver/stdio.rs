@@ -1,0 +1,238 @@
+//! One long-lived child that speaks JSON in lines: it gets dispatches on its standard input, and answers and reports
+//! observations on its standard output. What it writes to standard error is its own affair.
+//!
+//! A child that ends is started again. One that does not answer in time is ended, and started again.
+
+use std::collections::HashMap;
+use std::process::Stdio;
+use std::time::Duration as Real;
+
+use serde::Deserialize;
+use serde_json::{Value, json};
+use tokio::io::{AsyncBufReadExt, AsyncWriteExt, BufReader, Lines};
+use tokio::process::{Child, ChildStdin, ChildStdout, Command};
+use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
+use tokio::time::{Instant, sleep_until, timeout};
+
+use super::command::{kill, shell};
+use super::{Order, Treatment, dispatch};
+use crate::desk::Desk;
+
+/// What a child may say, one of them in each line.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+enum Said {
+    Executed(Executed),
+    Failed {
+        id: String,
+        #[serde(default)]
+        reason: String,
+    },
+    Observed(Observed),
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+enum Executed {
+    Id(String),
+    Ago { id: String, ago: Option<f64> },
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+enum Observed {
+    One(String),
+    Several(Vec<String>),
+    Event { event: String },
+}
+
+const EXPECTED: &str = r#"expected {"executed": {"id": ...}}, {"failed": {"id": ..., "reason": ...}} or {"observed": {"event": ...}}"#;
+
+/// How long a child that has been told that the mission is over may take to end.
+const FAREWELL: Real = Real::from_secs(2);
+/// How long after its end a child is started again, at first and at most.
+const AGAIN: (Real, Real) = (Real::from_millis(100), Real::from_secs(5));
+
+struct Conversation {
+    child: Child,
+    input: ChildStdin,
+    output: Lines<BufReader<ChildStdout>>,
+}
+
+pub(super) async fn run(
+    command: String,
+    treatment: Treatment,
+    greeting: Value,
+    mut inbox: UnboundedReceiver<Order>,
+    desk: Desk,
+) {
+    let (answers, mut to_child) = unbounded_channel::<Value>();
+    let mut pending: HashMap<String, Instant> = HashMap::new();
+    let mut again = AGAIN.0;
+    let mut starts_at = Instant::now();
+    let mut conversation: Option<Conversation> = None;
+    // What arrived while no child was there.
+    let mut waiting: Vec<Value> = Vec::new();
+    loop {
+        let deadline =
+            pending.values().min().copied().unwrap_or_else(|| Instant::now() + Real::from_secs(3600));
+        tokio::select! {
+            order = inbox.recv() => match order {
+                Some(Order::Send(sending)) => {
+                    pending.insert(sending.id.clone(), Instant::now() + treatment.limit);
+                    let line = json!({ "dispatch": dispatch(&sending) });
+                    if !tell(&mut conversation, &line).await {
+                        waiting.push(line);
+                    }
+                }
+                Some(Order::Over(execution)) => {
+                    let line = json!({ "over": { "outcome": execution.outcome, "failure": execution.failure } });
+                    tell(&mut conversation, &line).await;
+                    return farewell(conversation).await;
+                }
+                None => return farewell(conversation).await,
+            },
+            Some(line) = to_child.recv() => {
+                tell(&mut conversation, &line).await;
+            }
+            () = sleep_until(starts_at), if conversation.is_none() => {
+                match start(&command, treatment.silent) {
+                    Ok(started) => {
+                        conversation = Some(started);
+                        tell(&mut conversation, &json!({ "start": greeting })).await;
+                        for line in waiting.drain(..) {
+                            tell(&mut conversation, &line).await;
+                        }
+                    }
+                    Err(reason) => {
+                        desk.warn(format!("the driver cannot be started: {reason}"));
+                        starts_at = Instant::now() + again;
+                        again = (again * 2).min(AGAIN.1);
+                    }
+                }
+            }
+            line = hear(&mut conversation), if conversation.is_some() => match line {
+                Ok(Some(line)) => {
+                    again = AGAIN.0;
+                    listen(&line, &mut pending, &desk, &answers);
+                }
+                Ok(None) | Err(_) => {
+                    let why = ended(conversation.take()).await;
+                    desk.warn(format!("the driver ended ({why}); it is started again"));
+                    fail_all(&mut pending, &mut waiting, &desk, &format!("the driver ended ({why})"));
+                    starts_at = Instant::now() + again;
+                    again = (again * 2).min(AGAIN.1);
+                }
+            },
+            () = sleep_until(deadline), if !pending.is_empty() => {
+                let limit = treatment.limit.as_secs_f64();
+                desk.warn(format!("the driver has not answered within {limit} s; it is started again"));
+                fail_all(&mut pending, &mut waiting, &desk, &format!("no answer within {limit} s"));
+                if let Some(conversation) = &conversation {
+                    kill(&conversation.child);
+                }
+                ended(conversation.take()).await;
+                starts_at = Instant::now();
+            }
+        }
+    }
+}
+
+/// What the child was told it will not do any more; the executive decides what is tried again.
+fn fail_all(pending: &mut HashMap<String, Instant>, waiting: &mut Vec<Value>, desk: &Desk, reason: &str) {
+    waiting.clear();
+    let mut ids: Vec<String> = std::mem::take(pending).into_keys().collect();
+    ids.sort_unstable();
+    for id in ids {
+        desk.failed(id, reason.to_string());
+    }
+}
+
+fn start(command: &str, silent: bool) -> Result<Conversation, String> {
+    let mut command: Command = shell(command, silent);
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).kill_on_drop(true);
+    let mut child = command.spawn().map_err(|error| error.to_string())?;
+    match (child.stdin.take(), child.stdout.take()) {
+        (Some(input), Some(output)) => {
+            Ok(Conversation { child, input, output: BufReader::new(output).lines() })
+        }
+        _ => Err("it has no standard input and output".to_string()),
+    }
+}
+
+/// Writes a line to the child; false if it does not take it.
+async fn tell(conversation: &mut Option<Conversation>, line: &Value) -> bool {
+    let Some(Conversation { input, .. }) = conversation else { return false };
+    let text = format!("{line}\n");
+    // A child that does not read is not worth waiting for: its end is noticed elsewhere.
+    let written = timeout(Real::from_secs(1), async {
+        input.write_all(text.as_bytes()).await?;
+        input.flush().await
+    });
+    matches!(written.await, Ok(Ok(())))
+}
+
+async fn hear(conversation: &mut Option<Conversation>) -> std::io::Result<Option<String>> {
+    match conversation {
+        Some(conversation) => conversation.output.next_line().await,
+        None => std::future::pending().await,
+    }
+}
+
+fn listen(line: &str, pending: &mut HashMap<String, Instant>, desk: &Desk, answers: &UnboundedSender<Value>) {
+    if line.trim().is_empty() {
+        return;
+    }
+    match serde_json::from_str(line) {
+        Ok(Said::Executed(said)) => {
+            let (id, ago) = match said {
+                Executed::Id(id) => (id, None),
+                Executed::Ago { id, ago } => (id, ago.filter(|ago| ago.is_finite() && *ago >= 0.0)),
+            };
+            pending.remove(&id);
+            desk.executed(id, ago);
+        }
+        Ok(Said::Failed { id, reason }) => {
+            pending.remove(&id);
+            let reason = if reason.is_empty() { "the driver says it failed".to_string() } else { reason };
+            desk.failed(id, reason);
+        }
+        Ok(Said::Observed(observed)) => {
+            let names = match observed {
+                Observed::One(event) | Observed::Event { event } => vec![event],
+                Observed::Several(events) => events,
+            };
+            let answers = answers.clone();
+            desk.news(
+                names,
+                Box::new(move |answer| {
+                    // The driver may be gone by now.
+                    let _ = answers.send(json!({ "news": answer }));
+                }),
+            );
+        }
+        Err(error) => {
+            let start: String = line.chars().take(80).collect();
+            desk.warn(format!(
+                "the driver said `{start}`, which kirk does not understand ({error}); {EXPECTED}"
+            ));
+        }
+    }
+}
+
+async fn ended(conversation: Option<Conversation>) -> String {
+    let Some(mut conversation) = conversation else { return "it was not running".to_string() };
+    drop(conversation.input);
+    match timeout(FAREWELL, conversation.child.wait()).await {
+        Ok(Ok(status)) => status.to_string(),
+        _ => {
+            kill(&conversation.child);
+            let _ = conversation.child.wait().await;
+            "it closed its output and was ended".to_string()
+        }
+    }
+}
+
+async fn farewell(conversation: Option<Conversation>) {
+    ended(conversation).await;
+}

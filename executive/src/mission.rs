@@ -1,0 +1,278 @@
+//! From a proven plan, or from a journal, to an executive at work.
+
+use std::net::TcpListener;
+use std::path::Path;
+use std::sync::mpsc::Receiver;
+use std::time::Duration as Real;
+
+use kirk_network::{Duration, Network, Time};
+use kirk_runtime::journal::{Line, Record, Start};
+use kirk_runtime::{Execution, Executive, Handover, Patience, Plan, Settings, Setup, Strategy, replay};
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+use serde_json::value::RawValue;
+
+use crate::clock::{Clock, clocks};
+use crate::desk::{Desk, Message};
+use crate::driver::{Driver, Running, Treatment};
+use crate::file::JournalFile;
+
+/// What is executed.
+#[derive(Clone, Debug)]
+pub struct Mission {
+    /// The control program, or the name of the network.
+    pub program: String,
+    /// The network as written, not merged.
+    pub network: Network,
+    /// Its plan.
+    pub plan: Plan,
+    /// What the driver hears of.
+    pub handovers: Vec<Handover>,
+}
+
+/// How a mission is executed. All of it is in the journal, for going on.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Options {
+    /// True if news that says more than the plan assumed is planned with.
+    pub optimistic: bool,
+    /// How many times faster than the world.
+    pub speed: f64,
+    /// How many seconds before they are due events may be handed over.
+    pub tolerance: f64,
+    /// Who executes events; nobody but the reader of the timetable if `None`.
+    pub driver: Option<Driver>,
+    /// How many seconds an attempt of the driver may really take.
+    pub driver_timeout: f64,
+    /// Where news is heard over HTTP.
+    pub http: Option<Http>,
+    /// A shell command that is run if the mission fails.
+    pub on_failure: Option<String>,
+}
+
+/// Where news is heard over HTTP.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Http {
+    /// The address, usually that of this machine alone.
+    pub bind: String,
+    /// The port.
+    pub port: u16,
+    /// The file with the word that whoever brings news must know.
+    pub token_file: Option<String>,
+}
+
+/// A mission that is about to begin, or to go on. [`Ready::run`] does it.
+pub struct Ready {
+    pub(crate) executive: Executive,
+    pub(crate) options: Options,
+    pub(crate) desk: Desk,
+    pub(crate) inbox: Receiver<Message>,
+    pub(crate) journal: Option<JournalFile>,
+    pub(crate) driver: Option<Running>,
+    pub(crate) server: Option<crate::http::Server>,
+    /// True if it did not begin just now.
+    pub(crate) resumed: bool,
+}
+
+/// What a journal leads to.
+pub enum Resumption {
+    /// The mission goes on.
+    Ready(Box<Ready>),
+    /// The mission is over.
+    Over(Box<Execution>),
+}
+
+/// How late, really, an event may be and still count as executed when it was due, if no tolerance says more. A busy
+/// machine wakes up so late now and then, and no activity cares.
+const LATENESS: Real = Real::from_millis(100);
+/// How long before time zero everything is prepared, so that nothing is late at time zero.
+const PREPARATION: Real = Real::from_millis(50);
+/// How long to wait, really, before the driver is tried again, at first and at most.
+const PATIENCE: (Real, Real) = (Real::from_millis(100), Real::from_secs(2));
+
+/// Prepares a mission: opens the journal, the port and the driver. Its time zero is a moment later.
+///
+/// # Errors
+/// A sentence that says what cannot be opened. Then nothing has been started.
+pub fn begin(
+    mission: Mission,
+    options: Options,
+    journal: Option<&Path>,
+    silent: bool,
+) -> Result<Ready, String> {
+    if let Some(driver) = &options.driver {
+        driver.check(&mission.handovers)?;
+    }
+    let listener = open(&options)?;
+    let setup = setup(&mission, &options);
+    let run = setup.run.clone();
+    let shell = serde_json::to_string(&options).and_then(RawValue::from_string).map_err(|e| e.to_string())?;
+    let executive = Executive::new(mission.plan, setup.clone());
+    let clock = Clock::starting_in(PREPARATION, options.speed);
+    let journal = match journal {
+        None => None,
+        Some(path) => {
+            let version = env!("CARGO_PKG_VERSION");
+            let start = Start::new(&mission.network, &setup, options.speed, clock.anchor(), shell, version);
+            let line = Line::new(Time::ZERO, Record::Start(Box::new(start)));
+            Some(JournalFile::create(path, &line)?)
+        }
+    };
+    make(executive, options, clock, journal, listener, &run, silent, false)
+}
+
+/// Goes on with the mission of a journal. Time has passed meanwhile as the clocks of the machine say, or it is `at` now.
+/// `note` is told what a person should know.
+///
+/// # Errors
+/// A sentence that says why that is not possible.
+pub fn resume(
+    path: &Path,
+    at: Option<Time>,
+    silent: bool,
+    mut note: impl FnMut(String),
+) -> Result<Resumption, String> {
+    let (mut file, journal) = JournalFile::open(path)?;
+    if journal.torn > 0 {
+        note(format!("the last record was torn, {} bytes of it; it is left out", journal.torn));
+    }
+    let of_file = |bad| format!("`{}`, {bad}", path.display());
+    let replayed = replay(&journal, |_, _, _| {}).map_err(of_file)?;
+    let mut executive = replayed.executive;
+    if executive.is_over() {
+        return Ok(Resumption::Over(Box::new(executive.execution(replayed.at, false))));
+    }
+    let start = &journal.start;
+    let options: Options = serde_json::from_str(start.shell.get())
+        .map_err(|error| format!("`{}` does not say how the mission is executed: {error}", path.display()))?;
+    let listener = open(&options)?;
+    let (mut anchor, mut anchored) = (&start.clocks, Time::ZERO);
+    for line in &journal.lines {
+        if let Record::Resumed { clocks, .. } = &line.record {
+            (anchor, anchored) = (clocks, line.time());
+        }
+    }
+    let clocks = clocks();
+    let rebooted = clocks.rebooted_since(anchor);
+    let passed = clocks.since(anchor).map(|real| (real.as_micros() as f64 * options.speed) as i64);
+    let told = passed.and_then(|passed| anchored.checked_add(Duration::from_micros(passed)));
+    let now = match (at, told) {
+        (Some(at), _) => at,
+        (None, Some(told)) => told,
+        (None, None) => {
+            return Err("the machine was booted again, and its calendar says it is earlier than when the mission was \
+                        interrupted; say what time it is in the mission, in seconds after its start, with `--at`"
+                .to_string());
+        }
+    };
+    if now < replayed.at {
+        return Err(format!(
+            "the mission was executed until {} s, so it cannot be {now} s now; say what time it is in the mission with `--at`",
+            replayed.at
+        ));
+    }
+    note(format!("`{}` goes on at {now} s; the last record is of {} s", start.program, replayed.at));
+    let mut unsent = replayed.unsent;
+    if rebooted {
+        // The records of what left may be lost, not those of what was going to: the driver is asked.
+        unsent.clear();
+        if let Some(due) = replayed.ahead.filter(|&due| due <= now) {
+            file.push(&Line::new(due, Record::Timeout {}));
+            executive.handle_timeout(due);
+            // It may have left already: it is handed over again with all the rest.
+            while executive.poll_output().is_some() {}
+        }
+    }
+    file.push(&Line::new(now, Record::Resumed { clocks, unsent: unsent.clone() }));
+    executive.handle_resumed(now, &unsent);
+    let clock = Clock::starting(now, options.speed);
+    let run = start.run.clone();
+    make(executive, options, clock, Some(file), listener, &run, silent, true)
+        .map(|ready| Resumption::Ready(Box::new(ready)))
+}
+
+impl Ready {
+    /// Where to hand in news and to ask how things are.
+    pub fn desk(&self) -> Desk {
+        self.desk.clone()
+    }
+
+    /// The network that is executed.
+    pub fn network(&self) -> &Network {
+        self.executive.network()
+    }
+
+    /// Where news is heard over HTTP, if it is.
+    pub fn address(&self) -> Option<std::net::SocketAddr> {
+        self.server.as_ref().map(crate::http::Server::address)
+    }
+}
+
+fn open(options: &Options) -> Result<Option<(TcpListener, Option<Vec<u8>>)>, String> {
+    let Some(http) = &options.http else { return Ok(None) };
+    let token = http.token_file.as_ref().map(|file| crate::http::read_token(Path::new(file))).transpose()?;
+    let listener = crate::http::listen(&http.bind, http.port, token.is_some())?;
+    Ok(Some((listener, token)))
+}
+
+fn setup(mission: &Mission, options: &Options) -> Setup {
+    let scaled = |real: Real| Duration::from_micros((real.as_micros() as f64 * options.speed) as i64);
+    let lead = Duration::from_micros((options.tolerance * 1e6) as i64);
+    let settings = Settings {
+        strategy: if options.optimistic { Strategy::Optimistic } else { Strategy::Buffer },
+        lead,
+        lateness: lead.max(scaled(LATENESS)),
+        ..Settings::default()
+    };
+    Setup {
+        program: mission.program.clone(),
+        run: run_id(),
+        settings,
+        handovers: if options.driver.is_some() { mission.handovers.clone() } else { Vec::new() },
+        patience: Patience { first: scaled(PATIENCE.0), most: scaled(PATIENCE.1) },
+    }
+}
+
+/// What no other run has: when it began, and in which process.
+fn run_id() -> String {
+    format!("{:x}-{:x}", clocks().calendar, std::process::id())
+}
+
+#[expect(clippy::too_many_arguments, reason = "the one place where everything meets")]
+fn make(
+    executive: Executive,
+    options: Options,
+    clock: Clock,
+    journal: Option<JournalFile>,
+    listener: Option<(TcpListener, Option<Vec<u8>>)>,
+    run: &str,
+    silent: bool,
+    resumed: bool,
+) -> Result<Ready, String> {
+    let (desk, inbox) = Desk::new(executive.network(), clock);
+    for event in executive.network().event_ids() {
+        if executive.dispatcher().known(event).observed.is_some() {
+            desk.set_heard(event);
+        }
+    }
+    let greeting =
+        json!({ "protocol": "kirk-driver/1", "run": run, "speed": options.speed, "resumed": resumed });
+    let treatment = Treatment { limit: Real::from_secs_f64(options.driver_timeout), silent };
+    let driver = match &options.driver {
+        None => None,
+        Some(driver) => {
+            let started = driver.start(treatment, greeting, desk.clone());
+            Some(started.map_err(|error| format!("the driver cannot be started: {error}"))?)
+        }
+    };
+    let server = match listener {
+        None => None,
+        Some((listener, token)) => {
+            let options = crate::http::ServerOptions { token };
+            let server = crate::http::Server::start(listener, options, desk.clone());
+            Some(server.map_err(|error| format!("the port cannot be served: {error}"))?)
+        }
+    };
+    Ok(Ready { executive, options, desk, inbox, journal, driver, server, resumed })
+}

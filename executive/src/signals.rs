@@ -1,0 +1,31 @@
+//! The signals by which a mission is stopped from outside: interrupt, terminate, hang up.
+
+use tokio::signal::unix::{SignalKind, signal};
+
+use crate::desk::Desk;
+
+/// Stops the mission in good order at the first such signal; the second ends the process at once.
+pub fn stop_on_signals(desk: Desk) {
+    let Ok(runtime) = tokio::runtime::Builder::new_current_thread().enable_all().build() else { return };
+    std::thread::spawn(move || {
+        runtime.block_on(async {
+            let (Ok(mut interrupt), Ok(mut terminate)) =
+                (signal(SignalKind::interrupt()), signal(SignalKind::terminate()))
+            else {
+                return;
+            };
+            let mut stopping = false;
+            loop {
+                let name = tokio::select! {
+                    _ = interrupt.recv() => "interrupt",
+                    _ = terminate.recv() => "terminate",
+                };
+                if stopping {
+                    std::process::exit(1);
+                }
+                stopping = true;
+                desk.stop(format!("by a signal ({name})"));
+            }
+        });
+    });
+}

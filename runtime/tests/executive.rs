@@ -1,0 +1,378 @@
+//! The executive in a rough world: the driver is slow and fails, the clock is late, planning anew takes its time, news is
+//! repeated, and the process dies at any moment. Whatever happens, what was executed keeps every requirement in true time up
+//! to the lateness that was allowed, and the journal leads to the same state, bit for bit.
+//!
+//! `KIRK_CASES=100000 cargo test -p kirk-runtime --release --test executive` tries as many missions as one likes.
+
+#![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
+
+#[path = "../../network/tests/oracle/mod.rs"]
+mod oracle;
+
+use std::cmp::Reverse;
+use std::collections::{BinaryHeap, HashMap};
+
+use kirk_network::{Duration, EventId, Network, Time};
+use kirk_runtime::journal::{Clocks, Line, Record, Start, read, write};
+use kirk_runtime::nature::Nature;
+use kirk_runtime::{
+    Answer, Executive, Outcome, Output, Patience, Plan, Rebuild, Scope, Settings, Setup, Strategy, Temper,
+    handovers, replay, verify,
+};
+use oracle::random::{self, Shape};
+use serde_json::value::RawValue;
+
+fn cases(usual: u64) -> u64 {
+    std::env::var("KIRK_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(usual)
+}
+
+/// How the world is.
+#[derive(Clone, Copy)]
+struct World {
+    /// Everything takes up to so many microseconds: waking up, the driver, planning anew. Also what counts as on time.
+    slow: i64,
+    /// Of 100 attempts the driver fails so many.
+    fails: u32,
+    /// Of 100 steps the process dies after so many, and is back at once.
+    dies: u32,
+}
+
+/// What is still to come.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Coming {
+    News(EventId),
+    Answer { id: String, good: bool },
+}
+
+struct Life {
+    network: Network,
+    setup: Setup,
+    world: World,
+    random: fastrand::Rng,
+    executive: Executive,
+    coming: BinaryHeap<Reverse<(i64, Coming)>>,
+    rebuilding: Option<(i64, Rebuild)>,
+    /// When the driver has really done what; a repeated id is not done again.
+    done: HashMap<String, i64>,
+    /// When executable events really happened, and contingent ones.
+    truth: Vec<Option<i64>>,
+    journal: String,
+    checksum: u32,
+    deaths: u32,
+}
+
+impl Life {
+    fn new(network: &Network, strategy: Strategy, world: World, seed: u64) -> Option<Life> {
+        let plan = Plan::new(network).ok()?;
+        let setup = Setup {
+            program: "random".into(),
+            run: "run".into(),
+            settings: Settings {
+                strategy,
+                lateness: Duration::from_micros(world.slow),
+                ..Settings::default()
+            },
+            handovers: handovers(plan.network(), None, Scope::All),
+            patience: Patience {
+                first: Duration::from_micros(1),
+                most: Duration::from_micros(world.slow / 12 + 1),
+            },
+        };
+        let clocks = Clocks { boot: None, since_boot: 0, calendar: 0 };
+        let shell = RawValue::from_string("null".into()).unwrap();
+        let start = Start::new(network, &setup, 1.0, clocks, shell, "test");
+        let (journal, checksum) = write(&Line::new(Time::ZERO, Record::Start(Box::new(start))), 0);
+        Some(Life {
+            network: plan.network().clone(),
+            truth: vec![None; plan.network().events().len()],
+            executive: Executive::new(plan, setup.clone()),
+            setup,
+            world,
+            random: fastrand::Rng::with_seed(seed),
+            coming: BinaryHeap::new(),
+            rebuilding: None,
+            done: HashMap::new(),
+            journal,
+            checksum,
+            deaths: 0,
+        })
+    }
+
+    fn record(&mut self, at: i64, record: Record) {
+        let (text, checksum) = write(&Line::new(Time::from_micros(at), record), self.checksum);
+        self.journal.push_str(&text);
+        self.checksum = checksum;
+    }
+
+    /// A part of what may be late in all: waking up, failing twice, waiting to try again.
+    fn soon(&mut self) -> i64 {
+        self.random.i64(0..=self.world.slow / 12)
+    }
+
+    fn live(&mut self) -> Result<(), String> {
+        let network = self.network.clone();
+        let mut nature = Nature::new(&network, Temper::Random, self.random.u64(..), &[]);
+        let mut now = 0;
+        self.perform(now, &mut nature)?;
+        for _ in 0..100_000 {
+            if self.executive.is_over() {
+                return Ok(());
+            }
+            if self.random.u32(0..100) < self.world.dies {
+                self.die(now)?;
+                self.perform(now, &mut nature)?;
+            }
+            let timeout = self.executive.poll_timeout().map(|time| time.as_micros());
+            let coming = self.coming.peek().map(|Reverse((time, _))| *time);
+            let rebuilt = self.rebuilding.as_ref().map(|(time, _)| *time);
+            let Some(next) = [timeout, coming, rebuilt].into_iter().flatten().min() else {
+                return Err("nothing is due and nothing will be, but the mission is not over".into());
+            };
+            now = now.max(next);
+            if timeout == Some(next) {
+                // The world does not stop while we oversleep.
+                let late = self.soon();
+                now = match coming.into_iter().chain(rebuilt).min() {
+                    Some(other) => (now + late).min(other.max(now)),
+                    None => now + late,
+                };
+                self.timeout(now);
+            } else if coming == Some(next) {
+                let Reverse((arrived, coming)) = self.coming.pop().unwrap();
+                self.take(now, arrived, coming)?;
+            } else if let Some((_, rebuild)) = self.rebuilding.take() {
+                let from = rebuild.now();
+                let before = self.executive.version();
+                if self.executive.handle_rebuilt(Time::from_micros(now), rebuild.run()) {
+                    let from = kirk_network::json::seconds(Duration::from_micros(from.as_micros()));
+                    self.record(now, Record::Rebuilt { from });
+                } else if self.executive.version() != before {
+                    self.record(now, Record::Timeout {});
+                }
+            }
+            self.perform(now, &mut nature)?;
+        }
+        Err("the mission does not end".into())
+    }
+
+    fn timeout(&mut self, now: i64) {
+        let before = self.executive.version();
+        self.executive.handle_timeout(Time::from_micros(now));
+        if self.executive.version() != before {
+            self.record(now, Record::Timeout {});
+        }
+    }
+
+    fn take(&mut self, now: i64, arrived: i64, coming: Coming) -> Result<(), String> {
+        match coming {
+            Coming::News(event) => {
+                let name = self.network.id(event).to_string();
+                match self.executive.handle_news(Time::from_micros(arrived), event) {
+                    Answer::Accepted => self.record(arrived, Record::News { event: name }),
+                    Answer::Ignored(why) if !self.executive.is_over() && !why.contains("heard before") => {
+                        return Err(format!("news of {name} at {arrived} was ignored: {why}"));
+                    }
+                    Answer::Ignored(_) => {}
+                }
+                if self.random.u32(0..4) == 0 {
+                    let again = self.executive.handle_news(Time::from_micros(arrived), event);
+                    assert!(matches!(again, Answer::Ignored(_)), "{again:?}");
+                }
+            }
+            Coming::Answer { id, good: true } => {
+                self.record(now, Record::Executed { id: id.clone(), ago: None });
+                self.executive.handle_executed(Time::from_micros(now), &id, None);
+            }
+            Coming::Answer { id, good: false } => {
+                self.record(now, Record::Failed { id: id.clone(), reason: "no".into() });
+                self.executive.handle_failed(Time::from_micros(now), &id, "no");
+            }
+        }
+        Ok(())
+    }
+
+    fn perform(&mut self, now: i64, nature: &mut Nature) -> Result<(), String> {
+        let mut sends = Vec::new();
+        while let Some(output) = self.executive.poll_output() {
+            match output {
+                Output::Send(sending) => {
+                    let due = kirk_network::json::seconds(Duration::from_micros(sending.due.as_micros()));
+                    let (id, attempt) = (sending.id.clone(), sending.attempt);
+                    self.record(now, Record::Dispatch { id, due, attempt });
+                    sends.push(sending);
+                }
+                Output::Fixed(event) => {
+                    let time = self.executive.dispatcher().known(event).fixed.unwrap().0;
+                    let handed = self.setup.handovers.iter().any(|handover| handover.event == event);
+                    if self.network.link_of(event).is_none() && (!handed || event == self.network.origin()) {
+                        self.happens(event, time.as_micros(), nature)?;
+                    }
+                }
+                Output::Warning(text) => return Err(text),
+                Output::Over => {
+                    let execution = self.executive.execution(Time::from_micros(now), false);
+                    self.record(now, Record::End { execution });
+                }
+            }
+        }
+        for sending in sends {
+            self.record(now, Record::Sent { id: sending.id.clone() });
+            let answer = now + self.soon();
+            // It never fails more than twice, and never after it was done.
+            let known = self.done.contains_key(&sending.id);
+            let good = known || sending.attempt > 2 || self.random.u32(0..100) >= self.world.fails;
+            if good && !known {
+                self.done.insert(sending.id.clone(), now);
+                let event = self.network.find(&sending.name).unwrap();
+                let of_event = |id: &str| id == format!("run/{}", sending.name);
+                let last = self.setup.handovers.iter().filter(|h| h.event == event).all(|h| {
+                    of_event(&format!("run/{}", h.name)) || self.done.contains_key(&format!("run/{}", h.name))
+                });
+                if last && self.network.link_of(event).is_none() && event != self.network.origin() {
+                    self.happens(event, now, nature)?;
+                }
+            }
+            self.coming.push(Reverse((answer, Coming::Answer { id: sending.id, good })));
+        }
+        if self.rebuilding.is_none()
+            && let Some(rebuild) = self.executive.poll_rebuild(Time::from_micros(now))
+        {
+            let ready = now + self.soon();
+            self.rebuilding = Some((ready, rebuild));
+        }
+        Ok(())
+    }
+
+    /// An executable event really happens, and with it all that follows.
+    fn happens(&mut self, event: EventId, time: i64, nature: &mut Nature) -> Result<(), String> {
+        self.truth[event.index()] = Some(time);
+        for deed in nature.begin(event, Time::from_micros(time)).map_err(|error| format!("{error:?}"))? {
+            self.truth[deed.event.index()] = Some(deed.truth.as_micros());
+            if let Some(news) = deed.news {
+                self.coming.push(Reverse((news.as_micros(), Coming::News(deed.event))));
+            }
+        }
+        Ok(())
+    }
+
+    /// The process dies, and another goes on from the journal.
+    fn die(&mut self, now: i64) -> Result<(), String> {
+        self.deaths += 1;
+        let before = self.executive.execution(Time::from_micros(now), true);
+        let mut bytes = self.journal.clone().into_bytes();
+        // The last record may be torn.
+        bytes.extend_from_slice(&b"0123abcd {\"at\":"[..self.random.usize(0..15)]);
+        let journal = read(&bytes).map_err(|bad| bad.to_string())?;
+        assert_eq!(journal.length, self.journal.len());
+        let replayed = replay(&journal, |_, _, _| {}).map_err(|bad| format!("{bad}\n{}", self.journal))?;
+        let after = replayed.executive.execution(Time::from_micros(now), true);
+        if before != after {
+            return Err(format!("the journal leads elsewhere:\n{before:#?}\n{after:#?}\n{}", self.journal));
+        }
+        assert!(replayed.unsent.is_empty());
+        self.executive = replayed.executive;
+        self.rebuilding = None;
+        if !self.executive.is_over() {
+            // Answers that were under way are lost with the process; news is brought again until it is taken.
+            self.coming.retain(|Reverse((_, coming))| matches!(coming, Coming::News(_)));
+            let clocks = Clocks { boot: None, since_boot: 0, calendar: 0 };
+            self.record(now, Record::Resumed { clocks, unsent: Vec::new() });
+            self.executive.handle_resumed(Time::from_micros(now), &[]);
+        }
+        Ok(())
+    }
+
+    /// What is wrong with how it ended.
+    fn problem(&self) -> Option<String> {
+        let execution = self.executive.execution(Time::ZERO, false);
+        if execution.outcome != Outcome::Completed {
+            return Some(format!("{:?}", execution.failure));
+        }
+        for requirement in self.network.requirements() {
+            let (Some(from), Some(to)) =
+                (self.truth[requirement.from.index()], self.truth[requirement.to.index()])
+            else {
+                return Some(format!("{requirement:?} has an end that never happened"));
+            };
+            let length = to - from;
+            // Each end may be as late as is allowed, and so may news be that Nature sends on time.
+            let slack = 2 * self.world.slow;
+            let low = requirement.lower.finite().is_some_and(|lower| length < lower.as_micros() - slack);
+            let high = requirement.upper.finite().is_some_and(|upper| length > upper.as_micros() + slack);
+            if low || high {
+                return Some(format!("{requirement:?} has length {length}"));
+            }
+        }
+        if let Some(violation) = verify(&self.network, &execution).first() {
+            return Some(format!("verify: {violation:?}"));
+        }
+        None
+    }
+}
+
+/// Lives through a mission, and says what is wrong with it.
+fn problem(network: &Network, strategy: Strategy, world: World, seed: u64) -> Option<String> {
+    let mut life = Life::new(network, strategy, world, seed)?;
+    let lived = life.live().err().or_else(|| life.problem());
+    let told = |problem: String| format!("{problem}\n{}", life.journal);
+    lived.map(told).or_else(|| {
+        // The whole of it once more.
+        let journal = read(life.journal.as_bytes()).unwrap();
+        let replayed = replay(&journal, |_, _, _| {}).map_err(|bad| format!("{bad}\n{}", life.journal));
+        match replayed {
+            Err(problem) => Some(problem),
+            Ok(replayed) => {
+                let (ours, theirs) = (
+                    life.executive.execution(Time::ZERO, true),
+                    replayed.executive.execution(Time::ZERO, true),
+                );
+                (ours != theirs).then(|| format!("{ours:?}\n{theirs:?}"))
+            }
+        }
+    })
+}
+
+fn missions_hold(world: World, usual: u64) {
+    let shapes =
+        [Shape::tiny_delayed(), Shape::tiny_delayed().chained(), Shape::medium(), Shape::medium().chained()];
+    let (mut lived, mut controllable) = (0, 0);
+    for seed in 0..cases(usual) {
+        let network = random::network(seed, &shapes[(seed % 4) as usize]);
+        controllable += u64::from(Plan::new(&network).is_ok());
+        for strategy in [Strategy::Optimistic, Strategy::Buffer] {
+            lived += 1;
+            if let Some(found) = problem(&network, strategy, world, seed) {
+                let small =
+                    random::shrunk(&network, |candidate| problem(candidate, strategy, world, seed).is_some());
+                let shrunk = problem(&small, strategy, world, seed).unwrap_or_default();
+                panic!(
+                    "seed {seed} {strategy:?}: {found}\n{}\nshrinks to\n{}\n{shrunk}",
+                    random::describe(&network),
+                    random::describe(&small)
+                );
+            }
+        }
+    }
+    assert!(lived > 0 && controllable * 4 > cases(usual), "too few are controllable: {controllable}");
+}
+
+#[test]
+fn with_a_driver_that_confirms_at_once_missions_hold_to_the_microsecond() {
+    missions_hold(World { slow: 0, fails: 0, dies: 0 }, 500);
+}
+
+#[test]
+fn whatever_is_late_within_bounds_missions_hold_within_them() {
+    missions_hold(World { slow: 90_000, fails: 0, dies: 0 }, 500);
+}
+
+#[test]
+fn a_process_that_dies_at_any_step_goes_on_as_if_nothing_had_happened() {
+    missions_hold(World { slow: 0, fails: 0, dies: 30 }, 300);
+    missions_hold(World { slow: 90_000, fails: 0, dies: 30 }, 300);
+}
+
+#[test]
+fn an_attempt_that_fails_is_made_again() {
+    missions_hold(World { slow: 90_000, fails: 30, dies: 10 }, 300);
+}

@@ -304,10 +304,10 @@ impl Dispatcher {
     /// again.
     pub fn handle_rebuilt(&mut self, rebuilt: Rebuilt) -> bool {
         let current = rebuilt.version == self.version;
+        // A plan of this very state knows all the news there is.
+        self.stale = !current;
         if current {
             self.adopt(rebuilt);
-        } else {
-            self.stale = true;
         }
         current
     }

@@ -226,8 +226,8 @@ pub fn read(bytes: &[u8]) -> Result<Journal, BadJournal> {
                 before = checksum;
                 at = end + 1;
             }
-            // Nothing after it: it was being written when the machine or the process died.
-            (Err(_), end) if !lines.is_empty() && end.is_none_or(|end| end + 1 == bytes.len()) => break,
+            // It was being written when the machine or the process died.
+            (Err(_), _) if !lines.is_empty() && is_torn(&bytes[at..]) => break,
             (Err(message), _) => return Err(BadJournal { line: lines.len() + 1, message }),
             (Ok(_), None) => unreachable!("a line is read up to its end"),
         }
@@ -251,6 +251,18 @@ pub fn is_journal(bytes: &[u8]) -> bool {
         && bytes[8] == b' '
         && bytes[9] == b'{'
         && bytes[..8].iter().all(|byte| byte.is_ascii_hexdigit())
+}
+
+/// True if these last bytes of a file are the beginning of a line, or partly never reached the disk.
+fn is_torn(bytes: &[u8]) -> bool {
+    let one_line = bytes.iter().position(|&byte| byte == b'\n').is_none_or(|end| end + 1 == bytes.len());
+    let begun = |bytes: &[u8]| {
+        let (checksum, json) = bytes.split_at(bytes.len().min(9));
+        let unfinished = || serde_json::from_slice::<serde::de::IgnoredAny>(json).is_err_and(|e| e.is_eof());
+        checksum.iter().all(|byte| byte.is_ascii_hexdigit() || *byte == b' ')
+            && (json.is_empty() || unfinished())
+    };
+    one_line && (bytes.contains(&0) || begun(bytes))
 }
 
 fn read_line(bytes: &[u8], before: u32) -> Result<(Line, u32), String> {
@@ -359,10 +371,11 @@ impl Start {
 impl Clocks {
     /// How long after `earlier` these are, as far as the clocks can tell; `None` if they say it was before.
     pub fn since(&self, earlier: &Clocks) -> Option<Duration> {
-        let micros = if self.boot.is_some() && self.boot == earlier.boot {
-            self.since_boot - earlier.since_boot
-        } else {
+        let micros = if self.rebooted_since(earlier) {
             self.calendar - earlier.calendar
+        } else {
+            // The start of a mission is set for a moment later, and the process may die before.
+            (self.since_boot - earlier.since_boot).max(0)
         };
         (micros >= 0).then(|| Duration::from_micros(micros))
     }
@@ -382,5 +395,86 @@ impl Line {
     /// Its time.
     pub fn time(&self) -> Time {
         Time::from_micros(self.at.0.as_micros())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn clocks(boot: Option<&str>, since_boot: i64, calendar: i64) -> Clocks {
+        Clocks { boot: boot.map(str::to_string), since_boot, calendar }
+    }
+
+    #[test]
+    fn a_calendar_that_is_set_changes_nothing_unless_the_machine_was_booted_again() {
+        let start = clocks(Some("a"), 1_000, 50_000);
+        let set_back = clocks(Some("a"), 3_000, 20_000);
+        assert_eq!(set_back.since(&start), Some(Duration::from_micros(2_000)));
+        let set_forward = clocks(Some("a"), 3_000, 90_000);
+        assert_eq!(set_forward.since(&start), Some(Duration::from_micros(2_000)));
+        let booted = clocks(Some("b"), 10, 57_000);
+        assert_eq!(booted.since(&start), Some(Duration::from_micros(7_000)));
+        assert!(booted.rebooted_since(&start) && !set_back.rebooted_since(&start));
+        let booted_and_set_back = clocks(Some("b"), 10, 20_000);
+        assert_eq!(booted_and_set_back.since(&start), None);
+        let no_boot = clocks(None, 3_000, 51_000);
+        assert_eq!(no_boot.since(&clocks(None, 1_000, 50_000)), Some(Duration::from_micros(1_000)));
+    }
+
+    #[test]
+    fn every_damage_is_noticed_and_only_a_torn_end_is_forgiven() {
+        let line = |n: i64| Line::new(Time::from_micros(n), Record::Warning { text: format!("line {n}") });
+        let network = json::read(r#"{"format": "kirk-network/1", "origin": "z", "events": ["z"]}"#).unwrap();
+        let setup = Setup {
+            program: "p".into(),
+            run: "r".into(),
+            settings: Settings::default(),
+            handovers: Vec::new(),
+            patience: Patience { first: Duration::ZERO, most: Duration::ZERO },
+        };
+        let shell = RawValue::from_string("null".into()).unwrap();
+        let start = Start::new(&network, &setup, 1.0, clocks(None, 0, 0), shell, "0");
+        let mut text = String::new();
+        let mut before = 0;
+        let first = Line::new(Time::ZERO, Record::Start(Box::new(start)));
+        for line in [first, line(1), line(2), line(3)] {
+            let (written, checksum) = write(&line, before);
+            text.push_str(&written);
+            before = checksum;
+        }
+        let whole = text.as_bytes();
+        assert_eq!(read(whole).unwrap().lines.len(), 3);
+        let starts: Vec<usize> = std::iter::once(0)
+            .chain((0..whole.len()).filter(|&at| whole[at] == b'\n').map(|at| at + 1))
+            .collect();
+        // Cut anywhere: what is whole is kept, and without a first line there is no journal.
+        for cut in 0..whole.len() {
+            let kept = starts.iter().filter(|&&at| at > 0 && at <= cut).count();
+            match read(&whole[..cut]) {
+                Ok(journal) => {
+                    assert_eq!((journal.lines.len() + 1, journal.length), (kept, starts[kept]), "{cut}")
+                }
+                Err(bad) => assert!(kept == 0 && bad.line == 1, "{cut}: {bad}"),
+            }
+        }
+        // Changed anywhere: an error, except in the last line, which counts as torn.
+        for at in 0..whole.len() {
+            let mut changed = whole.to_vec();
+            changed[at] ^= 1;
+            let last = at >= starts[3];
+            match read(&changed) {
+                Ok(journal) => assert!(last && journal.lines.len() == 2 && journal.torn > 0, "byte {at}"),
+                Err(bad) => {
+                    assert!(!last || changed[at] == b'\n' || at + 1 == whole.len(), "byte {at}: {bad}")
+                }
+            }
+        }
+        // A line that is missing, doubled, or in another place.
+        let part = |n: usize| &text[starts[n]..starts[n + 1]];
+        for order in [vec![0, 2, 3], vec![0, 1, 1, 2, 3], vec![0, 2, 1, 3]] {
+            let moved: String = order.iter().map(|&n| part(n)).collect();
+            assert!(read(moved.as_bytes()).is_err(), "{order:?}");
+        }
     }
 }

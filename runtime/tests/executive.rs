@@ -51,7 +51,7 @@ struct Life {
     random: fastrand::Rng,
     executive: Executive,
     coming: BinaryHeap<Reverse<(i64, Coming)>>,
-    rebuilding: Option<(i64, Rebuild)>,
+    rebuilding: Vec<(i64, Rebuild)>,
     /// When the driver has really done what; a repeated id is not done again.
     done: HashMap<String, i64>,
     /// When executable events really happened, and contingent ones.
@@ -90,7 +90,7 @@ impl Life {
             world,
             random: fastrand::Rng::with_seed(seed),
             coming: BinaryHeap::new(),
-            rebuilding: None,
+            rebuilding: Vec::new(),
             done: HashMap::new(),
             journal,
             checksum,
@@ -124,7 +124,7 @@ impl Life {
             }
             let timeout = self.executive.poll_timeout().map(|time| time.as_micros());
             let coming = self.coming.peek().map(|Reverse((time, _))| *time);
-            let rebuilt = self.rebuilding.as_ref().map(|(time, _)| *time);
+            let rebuilt = self.rebuilding.iter().map(|(time, _)| *time).min();
             let Some(next) = [timeout, coming, rebuilt].into_iter().flatten().min() else {
                 return Err("nothing is due and nothing will be, but the mission is not over".into());
             };
@@ -140,7 +140,8 @@ impl Life {
             } else if coming == Some(next) {
                 let Reverse((arrived, coming)) = self.coming.pop().unwrap();
                 self.take(now, arrived, coming)?;
-            } else if let Some((_, rebuild)) = self.rebuilding.take() {
+            } else if let Some(at) = self.rebuilding.iter().position(|(time, _)| rebuilt == Some(*time)) {
+                let (_, rebuild) = self.rebuilding.remove(at);
                 let from = rebuild.now();
                 let before = self.executive.version();
                 if self.executive.handle_rebuilt(Time::from_micros(now), rebuild.run()) {
@@ -234,11 +235,9 @@ impl Life {
             }
             self.coming.push(Reverse((answer, Coming::Answer { id: sending.id, good })));
         }
-        if self.rebuilding.is_none()
-            && let Some(rebuild) = self.executive.poll_rebuild(Time::from_micros(now))
-        {
+        if let Some(rebuild) = self.executive.poll_rebuild(Time::from_micros(now)) {
             let ready = now + self.soon();
-            self.rebuilding = Some((ready, rebuild));
+            self.rebuilding.push((ready, rebuild));
         }
         Ok(())
     }
@@ -271,7 +270,7 @@ impl Life {
         }
         assert!(replayed.unsent.is_empty());
         self.executive = replayed.executive;
-        self.rebuilding = None;
+        self.rebuilding.clear();
         if !self.executive.is_over() {
             // Answers that were under way are lost with the process; news is brought again until it is taken.
             self.coming.retain(|Reverse((_, coming))| matches!(coming, Coming::News(_)));

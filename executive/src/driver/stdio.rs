@@ -73,6 +73,7 @@ pub(super) async fn run(
     let mut conversation: Option<Conversation> = None;
     // What arrived while no child was there.
     let mut waiting: Vec<Value> = Vec::new();
+    let mut last_end = String::new();
     loop {
         let deadline =
             pending.values().min().copied().unwrap_or_else(|| Instant::now() + Real::from_secs(3600));
@@ -106,6 +107,7 @@ pub(super) async fn run(
                     }
                     Err(reason) => {
                         desk.warn(format!("the driver cannot be started: {reason}"));
+                        last_end = reason;
                         starts_at = Instant::now() + again;
                         again = (again * 2).min(AGAIN.1);
                     }
@@ -122,16 +124,19 @@ pub(super) async fn run(
                     fail_all(&mut pending, &mut waiting, &desk, &format!("the driver ended ({why})"));
                     starts_at = Instant::now() + again;
                     again = (again * 2).min(AGAIN.1);
+                    last_end = why;
                 }
             },
             () = sleep_until(deadline), if !pending.is_empty() => {
                 let limit = treatment.limit.as_secs_f64();
+                let Some(hung) = conversation.take() else {
+                    fail_all(&mut pending, &mut waiting, &desk, &format!("the driver ended ({last_end})"));
+                    continue;
+                };
                 desk.warn(format!("the driver has not answered within {limit} s; it is started again"));
                 fail_all(&mut pending, &mut waiting, &desk, &format!("no answer within {limit} s"));
-                if let Some(conversation) = &conversation {
-                    kill(&conversation.child);
-                }
-                ended(conversation.take()).await;
+                kill(&hung.child);
+                ended(Some(hung)).await;
                 starts_at = Instant::now();
             }
         }

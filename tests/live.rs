@@ -1,0 +1,363 @@
+//! Missions in real time, with the real binary, at a high speed of the clock: drivers of every kind, and a process that is
+//! killed again and again.
+
+#![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
+
+mod binary;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::Write;
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use binary::{kirk, stderr, stdout};
+use serde_json::Value;
+
+const DELIVERIES: &str = "tests/live/deliveries.rmpl";
+
+/// Starts `kirk` with these arguments, its output and errors to be read at the end.
+fn start(arguments: &[&str]) -> Child {
+    Command::new(env!("CARGO_BIN_EXE_kirk"))
+        .args(arguments)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap()
+}
+
+/// The events of an execution by name: time and how.
+fn rows(execution: &Value) -> BTreeMap<String, (Option<f64>, String)> {
+    let row = |row: &Value| {
+        let how = row["how"].as_str().unwrap().to_string();
+        (row["event"].as_str().unwrap().to_string(), (row["time"].as_f64(), how))
+    };
+    execution["rows"].as_array().unwrap().iter().map(row).collect()
+}
+
+/// The execution that a command has printed, which must have ended well.
+fn completed(output: &Output) -> Value {
+    assert_eq!(output.status.code(), Some(0), "{}{}", stdout(output), stderr(output));
+    let execution: Value = serde_json::from_str(&stdout(output)).unwrap();
+    assert_eq!(execution["outcome"], "completed");
+    execution
+}
+
+/// Checks an execution with `kirk verify`.
+fn verified(execution: &Value, file: &str) {
+    let mut record = tempfile::NamedTempFile::new().unwrap();
+    write!(record, "{execution}").unwrap();
+    let output = kirk(&["verify", record.path().to_str().unwrap(), file, "-q"]);
+    assert_eq!(output.status.code(), Some(0), "{}{}\n{execution}", stdout(&output), stderr(&output));
+}
+
+/// What a file of lines says, as far as it is there.
+fn lines(file: &Path) -> Vec<String> {
+    std::fs::read_to_string(file).unwrap_or_default().lines().map(str::to_string).collect()
+}
+
+#[test]
+fn the_original_command_line_hands_over_starts_with_their_companions() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = folder.path().join("log");
+    let command = format!(
+        "echo \"{{'start_cmd':'~A','end_cmd':'~A'}} $KIRK_EVENT $KIRK_COMPANION\" >> {}",
+        log.display()
+    );
+    let kirk = start(&[
+        "run",
+        "examples/rmpl/drive-to-lecture.rmpl",
+        "--driver-command",
+        &command,
+        "--tolerance",
+        "1.0",
+        "--optimistic",
+        "--verbose",
+        "--speed",
+        "50",
+        "--format",
+        "json",
+    ]);
+    let output = kirk.wait_with_output().unwrap();
+    let execution = completed(&output);
+    verified(&execution, "examples/rmpl/drive-to-lecture.rmpl");
+    assert_eq!(rows(&execution)["drive-to-lecture:end"], (Some(50.0), "imagined".to_string()));
+    let mut told = lines(&log);
+    told.sort();
+    insta::assert_snapshot!(told.join("\n"), @r"
+    {'start_cmd':'+DRIVE-TO-LECTURE::START+','end_cmd':'+DRIVE-TO-LECTURE::END+'} +DRIVE-TO-LECTURE::START+ +DRIVE-TO-LECTURE::END+
+    {'start_cmd':'+EAT-BREAKFAST::START+','end_cmd':'+EAT-BREAKFAST::END+'} +EAT-BREAKFAST::START+ +EAT-BREAKFAST::END+
+    {'start_cmd':'+PACK-BAG::START+','end_cmd':'+PACK-BAG::END+'} +PACK-BAG::START+ +PACK-BAG::END+
+    {'start_cmd':'+REVIEW-PLANNING-NOTES::START+','end_cmd':'+REVIEW-PLANNING-NOTES::END+'} +REVIEW-PLANNING-NOTES::START+ +REVIEW-PLANNING-NOTES::END+
+    {'start_cmd':'+REVIEW-SCHEDULING-NOTES::START+','end_cmd':'+REVIEW-SCHEDULING-NOTES::END+'} +REVIEW-SCHEDULING-NOTES::START+ +REVIEW-SCHEDULING-NOTES::END+
+    {'start_cmd':'+SHOWER::START+','end_cmd':'+SHOWER::END+'} +SHOWER::START+ +SHOWER::END+
+    ");
+}
+
+#[test]
+fn ends_that_we_decide_are_handed_over_if_all_events_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = folder.path().join("log");
+    let command = format!("echo ~A ~A >> {}", log.display());
+    let file = "examples/rmpl/eat-and-bike.rmpl";
+    let kirk =
+        start(&["run", file, "--driver-command", &command, "--driver-events", "all", "--speed", "50", "-q"]);
+    assert_eq!(kirk.wait_with_output().unwrap().status.code(), Some(0));
+    let told: BTreeSet<String> = lines(&log).into_iter().collect();
+    let expected = [
+        "+BIKE-TO-LECTURE::END+ NIL",
+        "+BIKE-TO-LECTURE::START+ +BIKE-TO-LECTURE::END+",
+        "+EAT-BREAKFAST::END+ NIL",
+        "+EAT-BREAKFAST::START+ +EAT-BREAKFAST::END+",
+    ];
+    assert_eq!(told, expected.into_iter().map(str::to_string).collect());
+}
+
+#[test]
+fn the_drivers_of_the_examples_execute_a_mission() {
+    let mut drivers = vec!["stdio:examples/drivers/robot.sh"];
+    let has_python =
+        Command::new("python3").arg("--version").output().is_ok_and(|output| output.status.success());
+    if has_python {
+        drivers.push("stdio:python3 examples/drivers/robot.py");
+    }
+    for driver in drivers {
+        let kirk = start(&["run", DELIVERIES, "--driver", driver, "--speed", "20", "--format", "json"]);
+        let output = kirk.wait_with_output().unwrap();
+        let execution = completed(&output);
+        verified(&execution, DELIVERIES);
+        for (event, (_, how)) in rows(&execution) {
+            // Half a second of the robot is ten of the mission.
+            let expected =
+                if event.starts_with("fly") && event.ends_with("end") { "observed" } else { continue };
+            assert_eq!(how, expected, "{event} {driver}\n{}", stderr(&output));
+        }
+    }
+}
+
+#[test]
+fn a_driver_that_fails_or_dies_or_hangs_is_tried_again_and_then_the_mission_fails() {
+    let folder = tempfile::tempdir().unwrap();
+    let count = folder.path().join("count");
+    let failure = folder.path().join("failure");
+    // It works the third time.
+    let flaky = format!("echo x >> {0}; test $(wc -l < {0}) -ge 3", count.display());
+    let kirk = start(&[
+        "run",
+        "tests/live/once.rmpl",
+        "--driver-command",
+        &flaky,
+        "--speed",
+        "10",
+        "--format",
+        "json",
+    ]);
+    let output = kirk.wait_with_output().unwrap();
+    completed(&output);
+    assert_eq!(lines(&count).len(), 3);
+    for (driver, reason) in [
+        ("stdio:exit 3", "the driver ended (exit status: 3)"),
+        ("stdio:sleep 60", "no answer within 0.3 s"),
+        ("stdio:echo nonsense; sleep 60", "no answer within 0.3 s"),
+    ] {
+        let tell = format!("echo \"$KIRK_REASON $KIRK_EVENT $KIRK_DETAIL\" > {}", failure.display());
+        let arguments =
+            ["--driver", driver, "--driver-timeout", "0.3", "--on-failure", &tell, "--speed", "10"];
+        let mut all = vec!["run", "tests/live/once.rmpl"];
+        all.extend(arguments);
+        let output = start(&all).wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(1), "{driver}: {}", stderr(&output));
+        let told = lines(&failure).join(" ");
+        assert!(told.starts_with("driver-failed go:start") && told.contains(reason), "{driver}: {told}");
+    }
+}
+
+/// Kills a mission again and again, and has it go on each time.
+#[test]
+fn a_mission_that_is_killed_at_every_step_goes_on_and_is_verified() {
+    let folder = tempfile::tempdir().unwrap();
+    let journal = folder.path().join("journal");
+    let journal = journal.to_str().unwrap();
+    let log = folder.path().join("robot");
+    let command = format!("echo ~A $KIRK_DISPATCH_ID $(date +%s.%N) >> {}", log.display());
+    let mut random = fastrand::Rng::with_seed(7);
+    let mut mission = start(&[
+        "run",
+        DELIVERIES,
+        "--driver-command",
+        &command,
+        "--speed",
+        "8",
+        "--journal",
+        journal,
+        "--format",
+        "json",
+    ]);
+    let begun = Instant::now();
+    // Before it has begun there is nothing to go on with.
+    while !std::fs::read(journal).is_ok_and(|bytes| bytes.contains(&b'\n')) {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    let mut kills = 0;
+    let output = loop {
+        assert!(begun.elapsed() < Duration::from_secs(120), "{kills} kills and no end");
+        let until = Instant::now() + Duration::from_millis(random.u64(1..25));
+        let mut ended = false;
+        while Instant::now() < until && !ended {
+            // Flights and deliveries are over after half a second, four in the mission; that is said until it is heard.
+            let now =
+                std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap().as_secs_f64();
+            for line in lines(&log) {
+                let words: Vec<&str> = line.split(' ').collect();
+                let [event, _, at] = words[..] else { continue };
+                let started: f64 = at.parse().unwrap_or(f64::MAX);
+                if !event.contains("LOAD") && now > started + 0.55 {
+                    let end = event.replace("::START+", "::END+");
+                    // It may be dead already.
+                    let _ = writeln!(mission.stdin.as_ref().unwrap(), "{end}");
+                }
+            }
+            ended = mission.try_wait().unwrap().is_some();
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        if ended {
+            break mission.wait_with_output().unwrap();
+        }
+        mission.kill().unwrap();
+        mission.wait().unwrap();
+        kills += 1;
+        mission = start(&["resume", journal, "--format", "json"]);
+    };
+    assert!(kills > 100, "only {kills} kills: {}", stderr(&output));
+    let execution = completed(&output);
+    verified(&execution, DELIVERIES);
+
+    // It is in the journal as it was, and nothing was handed over after it was confirmed.
+    let replayed = kirk_replay(journal);
+    assert_eq!(replayed, execution);
+    let text = std::fs::read_to_string(journal).unwrap();
+    let mut confirmed: BTreeSet<String> = BTreeSet::new();
+    let mut sent: BTreeSet<String> = BTreeSet::new();
+    for line in text.lines() {
+        let line: Value = serde_json::from_str(&line[9..]).unwrap();
+        let record = &line["record"];
+        if let Some(id) = record["executed"]["id"].as_str() {
+            confirmed.insert(id.to_string());
+        }
+        if let Some(id) = record["sent"]["id"].as_str() {
+            assert!(!confirmed.contains(id), "{id} was handed over again\n{text}");
+            sent.insert(id.to_string());
+        }
+    }
+    assert_eq!(sent.len(), 18);
+    let told: BTreeSet<String> =
+        lines(&log).iter().filter_map(|line| line.split(' ').nth(1).map(str::to_string)).collect();
+    assert_eq!(told, sent, "the robot has heard of everything, under the same ids");
+    let again = kirk(&["resume", journal, "--format", "json", "-q"]);
+    assert_eq!(completed(&again), execution, "a mission that is over is not executed again");
+}
+
+fn kirk_replay(journal: &str) -> Value {
+    completed(&kirk(&["replay", journal, "--format", "json", "-q"]))
+}
+
+#[test]
+fn a_torn_record_is_left_out_and_a_damaged_one_is_an_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let journal = folder.path().join("journal");
+    let path = journal.to_str().unwrap();
+    let file = "examples/rmpl/eat-and-bike.rmpl";
+    let mission = start(&["run", file, "--speed", "100", "--journal", path, "--format", "json", "-q"]);
+    let execution = completed(&mission.wait_with_output().unwrap());
+    let whole = std::fs::read(&journal).unwrap();
+    assert_eq!(kirk_replay(path), execution);
+
+    let twice = kirk(&["run", file, "--speed", "100", "--journal", path]);
+    assert_eq!(twice.status.code(), Some(2));
+    assert!(stderr(&twice).contains("does not overwrite"), "{}", stderr(&twice));
+    assert_eq!(std::fs::read(&journal).unwrap(), whole);
+
+    // Without its end, and a part of the record before: there is something left to do.
+    let end = whole[..whole.len() - 1].iter().rposition(|&byte| byte == b'\n').unwrap();
+    std::fs::write(&journal, &whole[..end - 5]).unwrap();
+    let resumed = kirk(&["resume", path, "--format", "json"]);
+    assert_eq!(completed(&resumed)["rows"].as_array().unwrap().len(), 6);
+    assert!(stderr(&resumed).contains("the last record was torn"), "{}", stderr(&resumed));
+
+    let mut damaged = whole.clone();
+    let middle = damaged.iter().position(|&byte| byte == b'\n').unwrap() + 20;
+    damaged[middle] ^= 1;
+    std::fs::write(&journal, &damaged).unwrap();
+    for command in ["resume", "replay"] {
+        let output = kirk(&[command, path]);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).contains("line 2: it is damaged"), "{}", stderr(&output));
+    }
+    assert_eq!(std::fs::read(&journal).unwrap(), damaged, "a damaged journal is not touched");
+    for nothing in [&b""[..], b"no journal at all\n", b"\0\0\0\0\0\0\0\0\0\0\0"] {
+        std::fs::write(&journal, nothing).unwrap();
+        let output = kirk(&["replay", path]);
+        assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    }
+}
+
+#[test]
+fn windows_that_were_missed_while_nobody_was_there_are_reported() {
+    let folder = tempfile::tempdir().unwrap();
+    let journal = folder.path().join("journal");
+    let path = journal.to_str().unwrap();
+    let mut mission =
+        start(&["run", "examples/rmpl/eat-and-bike.rmpl", "--speed", "20", "--journal", path, "-q"]);
+    std::thread::sleep(Duration::from_millis(300));
+    mission.kill().unwrap();
+    mission.wait().unwrap();
+    // Both together take 40 at most; it is 1000 now.
+    let output = kirk(&["resume", path, "--at", "1000", "--format", "json"]);
+    assert_eq!(output.status.code(), Some(1));
+    let execution: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(execution["failure"]["reason"], "missed-window");
+    assert!(
+        execution["failure"]["detail"].as_str().unwrap().contains("until 20 at the latest"),
+        "{execution}"
+    );
+    let before = kirk(&["resume", path, "--at", "1"]);
+    assert_eq!(before.status.code(), Some(1), "it is over: {}", stderr(&before));
+}
+
+#[test]
+fn a_full_disk_ends_the_mission_before_anything_leaves_unrecorded() {
+    let folder = tempfile::tempdir().unwrap();
+    let (journal, log) = (folder.path().join("journal"), folder.path().join("log"));
+    // No file may grow beyond 10 KiB (20 blocks of 512 bytes).
+    let script = format!(
+        "trap '' XFSZ; ulimit -f 20; exec '{}' run {DELIVERIES} --driver-command 'echo $KIRK_DISPATCH_ID >> {}' --speed 20 \
+         --journal {} --format json -q",
+        env!("CARGO_BIN_EXE_kirk"),
+        log.display(),
+        journal.display(),
+    );
+    let output = Command::new("sh").args(["-c", &script]).stdin(Stdio::null()).output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{}{}", stdout(&output), stderr(&output));
+    let execution: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(execution["failure"]["reason"], "journal-failed", "{execution}");
+    // Everything the robot has heard of is in the journal.
+    let recorded = std::fs::read_to_string(&journal).unwrap();
+    for id in lines(&log) {
+        assert!(recorded.contains(&id), "{id}\n{recorded}");
+    }
+    let full = kirk(&["run", DELIVERIES, "--journal", "/dev/full"]);
+    assert_eq!(full.status.code(), Some(2));
+    let nowhere = kirk(&["run", DELIVERIES, "--journal", "/proc/journal"]);
+    assert_eq!(nowhere.status.code(), Some(2));
+}
+
+#[test]
+fn a_mission_with_names_a_shell_could_misread_is_refused_for_a_driver_command() {
+    let network =
+        r#"{"format":"kirk-network/1","origin":"z","events":["z","$(reboot):start","$(reboot):end"]}"#;
+    let output = binary::kirk_with_input(&["run", "-", "--driver-command", "echo ~A"], network.as_bytes());
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("`$(reboot):start`"), "{}", stderr(&output));
+}

@@ -258,7 +258,7 @@ fn is_torn(bytes: &[u8]) -> bool {
     let one_line = bytes.iter().position(|&byte| byte == b'\n').is_none_or(|end| end + 1 == bytes.len());
     let begun = |bytes: &[u8]| {
         let (checksum, json) = bytes.split_at(bytes.len().min(9));
-        let unfinished = || serde_json::from_slice::<serde::de::IgnoredAny>(json).is_err_and(|e| e.is_eof());
+        let unfinished = || serde_json::from_slice::<serde_json::Value>(json).is_err_and(|e| e.is_eof());
         checksum.iter().all(|byte| byte.is_ascii_hexdigit() || *byte == b' ')
             && (json.is_empty() || unfinished())
     };

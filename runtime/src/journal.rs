@@ -255,14 +255,13 @@ pub fn is_journal(bytes: &[u8]) -> bool {
 
 /// True if these last bytes of a file are the beginning of a line, or partly never reached the disk.
 fn is_torn(bytes: &[u8]) -> bool {
-    let one_line = bytes.iter().position(|&byte| byte == b'\n').is_none_or(|end| end + 1 == bytes.len());
-    let begun = |bytes: &[u8]| {
-        let (checksum, json) = bytes.split_at(bytes.len().min(9));
-        let unfinished = || serde_json::from_slice::<serde_json::Value>(json).is_err_and(|e| e.is_eof());
+    let (checksum, json) = bytes.split_at(bytes.len().min(9));
+    let begun = || {
+        let whole = serde_json::from_slice::<serde_json::Value>(json);
         checksum.iter().all(|byte| byte.is_ascii_hexdigit() || *byte == b' ')
-            && (json.is_empty() || unfinished())
+            && whole.map_or_else(|error| error.is_eof(), |_| true)
     };
-    one_line && (bytes.contains(&0) || begun(bytes))
+    !bytes.contains(&b'\n') && (bytes.contains(&0) || begun())
 }
 
 fn read_line(bytes: &[u8], before: u32) -> Result<(Line, u32), String> {
@@ -458,18 +457,18 @@ mod tests {
                 Err(bad) => assert!(kept == 0 && bad.line == 1, "{cut}: {bad}"),
             }
         }
-        // Changed anywhere: an error, except in the last line, which counts as torn.
+        // Changed anywhere: an error, in the line that is changed.
         for at in 0..whole.len() {
             let mut changed = whole.to_vec();
             changed[at] ^= 1;
-            let last = at >= starts[3];
-            match read(&changed) {
-                Ok(journal) => assert!(last && journal.lines.len() == 2 && journal.torn > 0, "byte {at}"),
-                Err(bad) => {
-                    assert!(!last || changed[at] == b'\n' || at + 1 == whole.len(), "byte {at}: {bad}")
-                }
-            }
+            let line = starts.iter().filter(|&&start| start <= at).count();
+            let found = read(&changed).map(|journal| journal.torn).map_err(|bad| bad.line);
+            assert_eq!(found, Err(line), "byte {at}");
         }
+        // What never reached the disk reads as zeros.
+        let mut zeros = whole[..starts[3] + 20].to_vec();
+        zeros.resize(whole.len(), 0);
+        assert_eq!(read(&zeros).unwrap().lines.len(), 2);
         // A line that is missing, doubled, or in another place.
         let part = |n: usize| &text[starts[n]..starts[n + 1]];
         for order in [vec![0, 2, 3], vec![0, 1, 1, 2, 3], vec![0, 2, 1, 3]] {

@@ -71,8 +71,6 @@ pub struct Ready {
     pub(crate) journal: Option<JournalFile>,
     pub(crate) driver: Option<Running>,
     pub(crate) server: Option<crate::http::Server>,
-    /// True if it did not begin just now.
-    pub(crate) resumed: bool,
 }
 
 /// What a journal leads to.
@@ -274,5 +272,5 @@ fn make(
             Some(server.map_err(|error| format!("the port cannot be served: {error}"))?)
         }
     };
-    Ok(Ready { executive, options, desk, inbox, journal, driver, server, resumed })
+    Ok(Ready { executive, options, desk, inbox, journal, driver, server })
 }

@@ -42,7 +42,7 @@ const LONGEST_SLEEP: Real = Real::from_secs(1);
 impl Ready {
     /// Executes the mission to its end.
     pub fn run(self, internal: bool) -> Ended {
-        let Ready { executive, options, desk, inbox, journal, driver, server, resumed: _ } = self;
+        let Ready { executive, options, desk, inbox, journal, driver, server } = self;
         let clock = *desk.clock();
         let mut work = Loop {
             executive,

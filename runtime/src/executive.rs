@@ -11,7 +11,7 @@ use kirk_network::{Duration, EventId, Network, Time};
 
 use crate::activity::Handover;
 use crate::dispatcher::{Dispatcher, Reception, Settings};
-use crate::execution::{Execution, Failure, Outcome, Row, at};
+use crate::execution::{Execution, Failure, How, Outcome, Row, at};
 use crate::order::{Order, Patience, State};
 use crate::plan::Plan;
 use crate::rebuild::{Rebuild, Rebuilt};
@@ -290,6 +290,10 @@ impl Executive {
     pub fn execution(&self, now: Time, internal: bool) -> Execution {
         let end = if self.over { self.end() } else { now };
         let mut execution = record(&self.dispatcher, &self.program, end, internal, &[]);
+        if !self.over {
+            // What is not known yet may still be heard.
+            execution.rows.retain(|row| row.how != How::Never);
+        }
         execution.failure = self.failure.clone();
         execution.outcome = match (&self.failure, self.over) {
             (Some(_), _) => Outcome::Failed,

@@ -15,6 +15,7 @@ use serde::Serialize;
 use tokio::sync::broadcast;
 
 use crate::clock::Clock;
+use crate::file::Ticket;
 use crate::happening::Happening;
 
 /// Hands in messages.
@@ -48,6 +49,8 @@ pub(crate) enum Message {
     Warning(String),
     /// A new plan is ready.
     Rebuilt { from: Time, rebuilt: Rebuilt },
+    /// Part of the journal is on the disk, or cannot be brought there.
+    Synced { ticket: Ticket, result: std::io::Result<()> },
     /// Somebody wants to know how things are.
     State { reply: Reply<String> },
     /// Somebody wants the mission to end.
@@ -161,6 +164,10 @@ impl Desk {
 
     pub(crate) fn rebuilt(&self, from: Time, rebuilt: Rebuilt) {
         let _ = self.inbox.send(Message::Rebuilt { from, rebuilt });
+    }
+
+    pub(crate) fn synced(&self, ticket: Ticket, result: std::io::Result<()>) {
+        let _ = self.inbox.send(Message::Synced { ticket, result });
     }
 
     pub(crate) fn set_version(&self, version: u64) {

@@ -242,7 +242,7 @@ fn make(
     executive: Executive,
     options: Options,
     clock: Clock,
-    journal: Option<JournalFile>,
+    mut journal: Option<JournalFile>,
     listener: Option<(TcpListener, Option<Vec<u8>>)>,
     run: &str,
     silent: bool,
@@ -253,6 +253,9 @@ fn make(
         if executive.dispatcher().known(event).observed.is_some() {
             desk.set_heard(event);
         }
+    }
+    if let Some(journal) = &mut journal {
+        journal.begin_syncing(desk.clone())?;
     }
     let greeting =
         json!({ "protocol": "kirk-driver/1", "run": run, "speed": options.speed, "resumed": resumed });

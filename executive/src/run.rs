@@ -1,9 +1,9 @@
 //! The loop: sleeps until the next decision or the next message, and does nothing else.
 //!
-//! What happens to the executive is in the journal, on disk, before anything that comes of it leaves the process. As the
-//! disk takes its time, what is due next is written ahead, shortly before.
+//! What happens to the executive is in the journal, on the disk, before anything that comes of it leaves the process. As the
+//! disk takes its time, what is due next is written ahead, and the loop goes on while the disk is at work.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet, VecDeque};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::Duration as Real;
 
@@ -16,7 +16,7 @@ use crate::clock::Clock;
 use crate::desk::{AnswerNews, Desk, Ignored, Message, Reply};
 use crate::driver::Running;
 use crate::failure;
-use crate::file::JournalFile;
+use crate::file::{JournalFile, Ticket};
 use crate::happening::Happening;
 use crate::lateness::Lateness;
 use crate::mission::Ready;
@@ -32,10 +32,8 @@ pub struct Ended {
     pub stopped: Option<String>,
 }
 
-/// How long before it is due, really, the next dispatch is written to the journal: from, and at the latest.
-const AHEAD: (Real, Real) = (Real::from_millis(100), Real::from_millis(15));
-/// How long news may wait for its answer while dispatches keep the loop busy.
-const LONGEST_ANSWER: Real = Real::from_millis(50);
+/// How long before it is due, really, the next dispatch is written to the journal.
+const AHEAD: Real = Real::from_millis(100);
 /// A machine that slept does not count its sleep as waiting: look at the clock now and then.
 const LONGEST_SLEEP: Real = Real::from_secs(1);
 
@@ -50,18 +48,21 @@ impl Ready {
             desk,
             journal,
             driver,
-            ahead: HashSet::new(),
+            ahead: HashMap::new(),
             ahead_of: None,
+            synced: 0,
+            outbox: VecDeque::new(),
             ignored: HashSet::new(),
             lateness: Lateness::default(),
             stopped: None,
-            unsynced: None,
-            replies: Vec::new(),
+            replies: VecDeque::new(),
         };
         work.write_ahead_now(Time::ZERO);
         std::thread::sleep(clock.until_anchor());
         work.go(&inbox);
-        work.answer();
+        // Whoever still wants to hand something in is not to wait for somebody to take it.
+        drop(inbox);
+        work.finish_journal();
         let now = clock.now();
         let mut execution = work.executive.execution(now, internal);
         if let Some(reason) = &work.stopped {
@@ -88,18 +89,20 @@ struct Loop {
     desk: Desk,
     journal: Option<JournalFile>,
     driver: Option<Running>,
-    /// Dispatches that are on disk already.
-    ahead: HashSet<String>,
+    /// Dispatches that were written ahead.
+    ahead: HashMap<String, Ticket>,
     /// For which state and time that was done.
     ahead_of: Option<(u64, Time)>,
+    /// What is on the disk.
+    synced: Ticket,
+    /// What leaves when it is.
+    outbox: VecDeque<(Ticket, Sending)>,
     /// News of no use that was recorded: by event and reason.
     ignored: HashSet<(String, String)>,
     lateness: Lateness,
     stopped: Option<String>,
-    /// Since when there is something that is to be on the disk soon.
-    unsynced: Option<Time>,
-    /// Who is answered once it is.
-    replies: Vec<(AnswerNews, Reply<AnswerNews>)>,
+    /// Who is answered when it is.
+    replies: VecDeque<(Ticket, AnswerNews, Reply<AnswerNews>)>,
 }
 
 impl Loop {
@@ -112,7 +115,6 @@ impl Loop {
                 self.timeout(now);
                 continue;
             }
-            self.sync_if_idle(now, next);
             self.write_ahead(now, next);
             let wait = next.map_or(LONGEST_SLEEP, |next| self.wait(now, next));
             match inbox.recv_timeout(wait.min(LONGEST_SLEEP)) {
@@ -144,8 +146,8 @@ impl Loop {
                 let ago = ago.map(|ago| Duration::from_micros(self.clock.mission_micros((ago * 1e6) as i64)));
                 self.record(now, Record::Executed { id: id.clone(), ago: ago.map(seconds) });
                 self.executive.handle_executed(now, &id, ago);
-                self.unsynced.get_or_insert(now);
                 self.perform();
+                self.sync();
             }
             Message::Failed { id, reason } => {
                 self.record(now, Record::Failed { id: id.clone(), reason: reason.clone() });
@@ -168,6 +170,11 @@ impl Loop {
                 }
                 self.perform();
             }
+            Message::Synced { ticket, result: Ok(()) } => {
+                self.synced = self.synced.max(ticket);
+                self.let_leave();
+            }
+            Message::Synced { result: Err(error), .. } => self.lose_journal(&error),
             Message::State { reply } => reply(self.state(now)),
             Message::Stop { reason } => self.stopped = Some(reason),
         }
@@ -197,26 +204,10 @@ impl Loop {
                 }
             }
         }
-        self.unsynced.get_or_insert(arrived);
-        self.replies.push((answer, reply));
         self.perform();
-    }
-
-    /// News is answered when it is on the disk, which takes a moment: not while something is about to be due, unless
-    /// somebody has waited long for it.
-    fn sync_if_idle(&mut self, now: Time, next: Option<Time>) {
-        let Some(since) = self.unsynced else { return };
-        let idle = next.is_none_or(|next| self.clock.real(now, next) > AHEAD.1);
-        if self.journal.is_none() || idle || self.clock.real(since, now) > LONGEST_ANSWER {
-            self.commit(true);
-            self.answer();
-        }
-    }
-
-    fn answer(&mut self) {
-        for (answer, reply) in self.replies.drain(..) {
-            reply(answer);
-        }
+        let ticket = if answer.accepted.is_empty() { 0 } else { self.sync() };
+        self.replies.push_back((ticket, answer, reply));
+        self.let_leave();
     }
 
     /// Has what news calls for planned anew, elsewhere.
@@ -231,12 +222,10 @@ impl Loop {
     fn perform(&mut self) {
         let now = self.clock.now();
         let mut sends: Vec<Sending> = Vec::new();
-        let mut sync = false;
         while let Some(output) = self.executive.poll_output() {
             match output {
                 Output::Send(sending) => {
                     let Sending { id, due, attempt, .. } = &sending;
-                    sync |= !(*attempt == 1 && self.ahead.contains(id));
                     let (id, due, attempt) = (id.clone(), at(*due), *attempt);
                     self.record(now, Record::Dispatch { id, due, attempt });
                     sends.push(sending);
@@ -258,19 +247,37 @@ impl Loop {
                 Output::Over => {
                     let execution = self.executive.execution(now, false);
                     self.record(now, Record::End { execution });
-                    sync = true;
                 }
             }
         }
-        self.commit(sync);
-        if self.unsynced.is_none() || self.journal.is_none() {
-            self.answer();
-        }
+        self.write();
+        let mut new = None;
         for sending in sends {
-            self.send(sending);
+            let ticket = match self.ahead.get(&sending.id) {
+                Some(&ticket) => ticket,
+                None => *new.get_or_insert_with(|| self.sync()),
+            };
+            self.outbox.push_back((ticket, sending));
         }
-        self.commit(false);
+        self.let_leave();
         self.desk.set_version(self.executive.version());
+    }
+
+    /// Lets go what is recorded for good.
+    fn let_leave(&mut self) {
+        let safe = if self.journal.is_some() { self.synced } else { Ticket::MAX };
+        for _ in 0..self.outbox.len() {
+            match self.outbox.pop_front() {
+                Some((ticket, sending)) if ticket <= safe => self.send(sending),
+                later => self.outbox.extend(later),
+            }
+        }
+        self.write();
+        while self.replies.front().is_some_and(|(ticket, ..)| *ticket <= safe) {
+            if let Some((_, answer, reply)) = self.replies.pop_front() {
+                reply(answer);
+            }
+        }
     }
 
     fn send(&mut self, sending: Sending) {
@@ -294,7 +301,7 @@ impl Loop {
     fn write_ahead(&mut self, now: Time, next: Option<Time>) {
         let Some(next) = next else { return };
         let gap = self.clock.real(now, next);
-        if self.journal.is_none() || gap > AHEAD.0 || gap < AHEAD.1 {
+        if self.journal.is_none() || gap > AHEAD {
             return;
         }
         let state = (self.executive.version(), next);
@@ -316,18 +323,19 @@ impl Loop {
                 ids.push(sending.id);
             }
         }
-        ids.retain(|id| !self.ahead.contains(id));
+        ids.retain(|id| !self.ahead.contains_key(id));
         if !ids.is_empty() {
-            self.ahead.extend(ids.iter().cloned());
-            self.record(self.clock.now(), Record::Ahead { due: at(next), ids });
-            self.commit(true);
+            self.record(self.clock.now(), Record::Ahead { due: at(next), ids: ids.clone() });
+            self.write();
+            let ticket = self.sync();
+            self.ahead.extend(ids.into_iter().map(|id| (id, ticket)));
         }
     }
 
     /// How long to sleep: until it is due, or until it is to be written ahead.
     fn wait(&self, now: Time, next: Time) -> Real {
         let gap = self.clock.real(now, next);
-        if self.journal.is_some() && gap > AHEAD.0 { gap - AHEAD.0 } else { gap }
+        if self.journal.is_some() && gap > AHEAD { gap - AHEAD } else { gap }
     }
 
     fn record(&mut self, time: Time, record: Record) {
@@ -336,20 +344,30 @@ impl Loop {
         }
     }
 
+    fn write(&mut self) {
+        if let Some(Err(error)) = self.journal.as_mut().map(JournalFile::write) {
+            self.lose_journal(&error);
+        }
+    }
+
+    fn sync(&mut self) -> Ticket {
+        self.journal.as_mut().map_or(0, JournalFile::sync)
+    }
+
     /// A mission whose journal cannot be written ends: nothing leaves that is not recorded.
-    fn commit(&mut self, sync: bool) {
-        let Some(journal) = &mut self.journal else {
-            self.unsynced = None;
-            return;
-        };
-        if sync {
-            self.unsynced = None;
+    fn lose_journal(&mut self, error: &std::io::Error) {
+        self.journal = None;
+        self.outbox.clear();
+        self.replies.clear();
+        let detail = format!("the journal cannot be written: {error}");
+        self.executive.handle_stopped(self.clock.now(), "journal-failed", &detail);
+    }
+
+    fn finish_journal(&mut self) {
+        if let Some(Err(error)) = self.journal.take().map(JournalFile::finish) {
+            self.lose_journal(&error);
         }
-        if let Err(error) = journal.commit(sync) {
-            self.journal = None;
-            let detail = format!("the journal cannot be written: {error}");
-            self.executive.handle_stopped(self.clock.now(), "journal-failed", &detail);
-        }
+        self.let_leave();
     }
 
     fn state(&self, now: Time) -> String {

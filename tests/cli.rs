@@ -53,7 +53,15 @@ fn wrong_files_get_a_message_and_status_2() {
     is_refused(&["verify", "examples/rmpl/robot.rmpl", "examples/rmpl/robot.rmpl"], b"", "K0803");
     is_refused(&["verify", "no/such/file.json", "examples/rmpl/robot.rmpl"], b"", "no such file");
     is_refused(&["explain", "K9999"], b"", "K9999");
-    is_refused(&["run", "examples/rmpl/robot.rmpl"], b"", "--simulate");
+    is_refused(&["run", "examples/rmpl/robot.rmpl", "--seed", "3"], b"", "--simulate");
+    is_refused(&["run", "examples/rmpl/robot.rmpl", "--simulate", "--speed", "3"], b"", "--speed");
+    is_refused(&["run", "examples/rmpl/robot.rmpl", "--speed", "0"], b"", "greater than 0");
+    is_refused(&["run", "examples/rmpl/robot.rmpl", "--driver", "robot"], b"", "stdio:");
+    is_refused(&["run", "examples/rmpl/robot.rmpl", "--driver-url", "https://robot/"], b"", "curl");
+    is_refused(&["run", "examples/rmpl/robot.rmpl", "--driver-command", "~A ~A ~A"], b"", "3 times");
+    is_refused(&["run", "examples/rmpl/robot.rmpl", "-p", "0", "--bind", "0.0.0.0"], b"", "--token-file");
+    is_refused(&["resume", "no/such/journal"], b"", "no/such/journal");
+    is_refused(&["replay", "examples/rmpl/robot.rmpl"], b"", "line 1");
     is_refused(&["check"], b"", "FILE");
     is_refused(&["fly"], b"", "fly");
     is_refused(&["run", "--simulate", "examples/rmpl/robot.rmpl", "--strategy", "hope"], b"", "hope");

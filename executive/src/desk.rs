@@ -60,7 +60,7 @@ pub(crate) enum Message {
 /// Called once with the answer.
 pub type Reply<T> = Box<dyn FnOnce(T) + Send>;
 
-/// What became of news, event by event as they were named.
+/// What became of news: the events by the names they were given.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct AnswerNews {
     /// Known now.

@@ -207,7 +207,10 @@ impl Ready {
     }
 }
 
-fn open(options: &Options) -> Result<Option<(TcpListener, Option<Vec<u8>>)>, String> {
+/// Where news is heard, and the word to know.
+type Ear = (TcpListener, Option<Vec<u8>>);
+
+fn open(options: &Options) -> Result<Option<Ear>, String> {
     let Some(http) = &options.http else { return Ok(None) };
     let token = http.token_file.as_ref().map(|file| crate::http::read_token(Path::new(file))).transpose()?;
     let listener = crate::http::listen(&http.bind, http.port, token.is_some())?;
@@ -243,7 +246,7 @@ fn make(
     options: Options,
     clock: Clock,
     mut journal: Option<JournalFile>,
-    listener: Option<(TcpListener, Option<Vec<u8>>)>,
+    listener: Option<Ear>,
     run: &str,
     silent: bool,
     resumed: bool,

@@ -190,6 +190,7 @@ impl Loop {
     ) {
         for (name, event) in events {
             let label = self.executive.network().label(event).to_string();
+            let before = self.executive.version();
             match self.executive.handle_news(arrived, event) {
                 Answer::Accepted => {
                     self.record(arrived, Record::News { event: label });
@@ -197,6 +198,11 @@ impl Loop {
                     answer.accepted.push(name);
                 }
                 Answer::Ignored(why) => {
+                    if self.executive.version() != before {
+                        // What was due before it was done all the same.
+                        self.record(just_before(arrived), Record::Timeout {});
+                        self.record(arrived, Record::Timeout {});
+                    }
                     if self.ignored.insert((label, why.clone())) {
                         self.record(arrived, Record::Ignored { event: name.clone(), why: why.clone() });
                     }
@@ -221,6 +227,8 @@ impl Loop {
     /// Records what has come of it all, and when that is safe lets it leave.
     fn perform(&mut self) {
         let now = self.clock.now();
+        // Whoever is told of something and asks for the state at once is to see it there.
+        self.desk.set_version(self.executive.version());
         let mut sends: Vec<Sending> = Vec::new();
         while let Some(output) = self.executive.poll_output() {
             match output {
@@ -260,7 +268,6 @@ impl Loop {
             self.outbox.push_back((ticket, sending));
         }
         self.let_leave();
-        self.desk.set_version(self.executive.version());
     }
 
     /// Lets go what is recorded for good.
@@ -374,6 +381,10 @@ impl Loop {
         serde_json::to_string(&self.executive.execution(now, false))
             .unwrap_or_else(|error| unreachable!("a record has only strings and numbers: {error}"))
     }
+}
+
+fn just_before(time: Time) -> Time {
+    Time::from_micros(time.as_micros() - 1)
 }
 
 fn at(time: Time) -> Seconds {

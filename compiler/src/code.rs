@@ -80,6 +80,7 @@ codes! {
     FreeParameters = 311, "the program to start from has parameters", names::FREE_PARAMETERS;
     UnknownLabel = 312, "a label that is not there", names::UNKNOWN_LABEL;
     AmbiguousLabel = 313, "a label or a name that means several occurrences", names::AMBIGUOUS_LABEL;
+    ReservedName = 314, "a name that has a meaning of its own", names::RESERVED_NAME;
     NotANumber = 401, "a bound that is not a number", bounds::NOT_A_NUMBER;
     Negative = 402, "a negative bound", bounds::NEGATIVE;
     LowerAboveUpper = 403, "the lower bound is above the upper bound", bounds::LOWER_ABOVE_UPPER;
@@ -103,6 +104,7 @@ codes! {
     BadCondition = 506, "not a condition kirk understands", worlds::BAD_CONDITION;
     NotPlannedWith = 507, "conditions are not planned with", worlds::NOT_PLANNED_WITH;
     UnknownType = 508, "not a type kirk knows", worlds::UNKNOWN_TYPE;
+    CircularClass = 509, "a class that extends itself", worlds::CIRCULAR_CLASS;
     NotControllable = 601, "the program cannot be executed in every case", worlds::NOT_CONTROLLABLE;
     CannotRead = 701, "a file that cannot be read", files::CANNOT_READ;
     BadNetwork = 702, "not a network kirk can read", files::BAD_NETWORK;

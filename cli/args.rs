@@ -137,9 +137,16 @@ pub(crate) struct Check {
     /// What to assume about the delays of news, instead of what is written.
     #[arg(long, value_enum, default_value_t = Delays::AsWritten, value_name = "WHAT")]
     pub(crate) delays: Delays,
-    /// How to print the result; JSON is one document per file, one per line.
-    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
-    pub(crate) format: TextOrJson,
+    /// How to print the result; JSON is one document per file, one per line, SARIF is one log of all files.
+    #[arg(long, value_enum, default_value_t = CheckFormat::Text)]
+    pub(crate) format: CheckFormat,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum CheckFormat {
+    Text,
+    Json,
+    Sarif,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -15,6 +15,7 @@ mod news;
 mod output;
 mod report;
 mod run;
+mod sarif;
 mod timetable;
 mod verify;
 

@@ -37,6 +37,11 @@ macro_rules! codes {
                 match self { $(Code::$name => $title,)* }
             }
 
+            /// What it means, in a paragraph or a few.
+            pub fn meaning(self) -> &'static str {
+                self.page().meaning.trim()
+            }
+
             fn page(self) -> &'static Page {
                 match self { $(Code::$name => &$page,)* }
             }
@@ -96,6 +101,7 @@ codes! {
     SameEvent = 413, "a constraint between an event and itself", bounds::SAME_EVENT;
     NeverBinds = 414, "an upper bound that is never reached", bounds::NEVER_BINDS;
     UselessNews = 415, "news that comes too irregularly to be of use", bounds::USELESS_NEWS;
+    NeverLate = 416, "an activity that can never start late", bounds::NEVER_LATE;
     UnknownPackage = 501, "a package that is not defined", worlds::UNKNOWN_PACKAGE;
     PackageNotChosen = 502, "several packages and none chosen", worlds::PACKAGE_NOT_CHOSEN;
     UnknownClass = 503, "a class that is not defined", worlds::UNKNOWN_CLASS;
@@ -139,12 +145,18 @@ pub fn pages() -> String {
          from `compiler/src/code/`.\n",
     );
     for code in Code::ALL {
-        let Page { meaning, wrong, right } = code.page();
-        text.push_str(&format!("\n## {code}: {}\n\n{}\n", code.title(), meaning.trim()));
-        for (title, example) in [("Wrong", wrong), ("Right", right)] {
-            if !example.trim().is_empty() {
-                text.push_str(&format!("\n{title}:\n\n```lisp\n{}\n```\n", example.trim_matches('\n')));
-            }
+        text.push_str(&format!("\n## {code}: {}\n\n{}", code.title(), markdown(*code)));
+    }
+    text
+}
+
+/// The page on a code in Markdown, without its heading.
+pub fn markdown(code: Code) -> String {
+    let Page { meaning, wrong, right } = code.page();
+    let mut text = format!("{}\n", meaning.trim());
+    for (title, example) in [("Wrong", wrong), ("Right", right)] {
+        if !example.trim().is_empty() {
+            text.push_str(&format!("\n{title}:\n\n```lisp\n{}\n```\n", example.trim_matches('\n')));
         }
     }
     text

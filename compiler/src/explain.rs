@@ -40,20 +40,7 @@ pub fn explain_conflict(
 
 /// The sum, and what to change.
 fn advice(conflict: &Conflict, network: &Network, origins: &Origins) -> String {
-    let mut shares: Vec<&Share> =
-        conflict.members.iter().filter(|share| share.amount != Duration::ZERO).collect();
-    shares.sort_by_key(|share| share.amount < Duration::ZERO);
-    let mut sum = String::new();
-    for share in &shares {
-        let magnitude = Duration::from_micros(share.amount.as_micros().saturating_abs());
-        let sign = match (share.amount < Duration::ZERO, sum.is_empty()) {
-            (true, true) => "-",
-            (true, false) => " - ",
-            (false, true) => "",
-            (false, false) => " + ",
-        };
-        sum.push_str(&format!("{sign}{magnitude}"));
-    }
+    let mut text = format!("These do not go together: {} = {} < 0.", sum(&conflict.members), conflict.total);
     let has = |wanted: &dyn Fn(Part) -> bool| conflict.members.iter().any(|share| wanted(share.part));
     let late = has(&|part| matches!(part, Part::DelayMax(_)));
     let joined = has(&|part| match part {
@@ -86,7 +73,7 @@ fn advice(conflict: &Conflict, network: &Network, origins: &Origins) -> String {
         Some((last, _)) => format!(" It would take {last}."),
         None => String::new(),
     };
-    let mut text = format!("These do not go together: {sum} = {} < 0.{advice}", conflict.total);
+    text.push_str(&advice);
     if conflict.conservative {
         text.push_str(
             " This \"no\" rests on a chain of activities of which the first is heard late; a cleverer use of that news \
@@ -96,8 +83,26 @@ fn advice(conflict: &Conflict, network: &Network, origins: &Origins) -> String {
     text
 }
 
+/// The amounts as a sum: `20 - 10 - 15`.
+pub(crate) fn sum(members: &[Share]) -> String {
+    let mut shares: Vec<&Share> = members.iter().filter(|share| share.amount != Duration::ZERO).collect();
+    shares.sort_by_key(|share| share.amount < Duration::ZERO);
+    let mut sum = String::new();
+    for share in &shares {
+        let magnitude = Duration::from_micros(share.amount.as_micros().saturating_abs());
+        let sign = match (share.amount < Duration::ZERO, sum.is_empty()) {
+            (true, true) => "-",
+            (true, false) => " - ",
+            (false, true) => "",
+            (false, false) => " + ",
+        };
+        sum.push_str(&format!("{sign}{magnitude}"));
+    }
+    sum
+}
+
 /// What one part of the conflict says, and where. `None` for what a user need not know.
-fn say(share: &Share, network: &Network, origins: &Origins) -> Option<(Span, String)> {
+pub(crate) fn say(share: &Share, network: &Network, origins: &Origins) -> Option<(Span, String)> {
     if share.times == 0 && !matches!(share.part, Part::Join(_)) {
         return None;
     }

@@ -31,6 +31,7 @@
 //! | blame | [`mod@check`] | negative cycle | minimal [`Conflict`] in terms of the network |
 //! | compile | [`mod@dispatchable`] | plain STNU | [`Dispatchable`] |
 //!
+//! [`mod@punctual`] finds the events of a controllable network that can never be executed late.
 //! [`json`], [`graphml`], [`plain`], [`dot`] and [`text`] are the formats, [`generate`] makes networks to measure with.
 //!
 //! # Words
@@ -63,6 +64,7 @@ pub mod json;
 pub mod merge;
 pub mod model;
 pub mod plain;
+pub mod punctual;
 mod radix;
 pub mod reduce;
 pub mod rmpl;

@@ -68,10 +68,8 @@ pub(super) fn foreign_line(line: &str) -> Option<&'static str> {
     } else if starts(&["(define (domain", "(define (problem"]) {
         "PDDL"
     } else if starts(&["def ", "import ", "from ", "class "]) && (line.ends_with(':') || !line.contains('('))
-    {
-        "Python"
-    } else if starts(&["for ", "while ", "if ", "with ", "async def "]) && line.ends_with(':')
-        || starts(&["print("])
+        || starts(&["for ", "while ", "if ", "with ", "async def "]) && line.ends_with(':')
+        || line.starts_with("print(")
     {
         "Python"
     } else if starts(&["let ", "const ", "var ", "function ", "export "]) {
@@ -95,8 +93,11 @@ pub(super) fn foreign_line(line: &str) -> Option<&'static str> {
     })
 }
 
-/// A comment or a string as other languages and word processors write them: its length, and what to say about it.
-pub(super) fn foreign_token(text: &str) -> Option<(usize, fn(Span) -> Diagnostic)> {
+/// The length of something in the text, and what to say about it.
+type Found = (usize, fn(Span) -> Diagnostic);
+
+/// A comment or a string as other languages and word processors write them.
+pub(super) fn foreign_token(text: &str) -> Option<Found> {
     /// How far the end of a comment is looked for.
     const NEAR: usize = 10_000;
     let line = || text.lines().next().unwrap_or("");

@@ -61,9 +61,18 @@ pub(crate) struct Selection {
     /// The package whose programs are meant; needed only when a file defines more than one.
     #[arg(short = 'P', long, value_name = "NAME")]
     pub(crate) package: Option<String>,
-    /// The control program to start from.
-    #[arg(long, value_name = "NAME", default_value = "main")]
-    pub(crate) entry: String,
+    /// The control program to start from [default: main].
+    #[arg(long, value_name = "NAME")]
+    pub(crate) entry: Option<String>,
+    /// The one to start from if none is asked for.
+    #[arg(skip)]
+    pub(crate) otherwise: Option<String>,
+}
+
+impl Selection {
+    pub(crate) fn entry(&self) -> &str {
+        self.entry.as_deref().or(self.otherwise.as_deref()).unwrap_or("main")
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

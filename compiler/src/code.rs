@@ -115,6 +115,7 @@ codes! {
     CannotRead = 701, "a file that cannot be read", files::CANNOT_READ;
     BadNetwork = 702, "not a network kirk can read", files::BAD_NETWORK;
     NumbersTooLarge = 703, "durations that add up to too much", files::NUMBERS_TOO_LARGE;
+    NoPrograms = 704, "an option that chooses a program, given with a network", files::NO_PROGRAMS;
     BadObservation = 801, "not an observation of this mission", files::BAD_OBSERVATION;
     ImpossibleObservation = 802, "news that the model rules out", files::IMPOSSIBLE_OBSERVATION;
     BadRecord = 803, "not the record of an execution", files::BAD_RECORD;

@@ -519,8 +519,10 @@ impl<'a> Reader<'a> {
         self.line_start = self.text[..self.tokens.position()].rfind('\n').map_or(0, |n| n + 1);
     }
 
+    /// From `start`, which is on the boundary of a character, to the first boundary from `end` on.
     fn span(&self, start: usize, end: usize) -> Span {
-        Span::new(self.source, start, end.min(self.text.len()))
+        let end = (end..self.text.len()).find(|end| self.text.is_char_boundary(*end));
+        Span::new(self.source, start, end.unwrap_or(self.text.len()))
     }
 }
 

@@ -24,7 +24,7 @@ use std::fmt::Display;
 use std::ops::Range;
 
 use crate::json::ReadProblem;
-use crate::model::{ContingentLink, Delay, Event, EventId, Name, Network};
+use crate::model::{ContingentLink, Delay, Event, EventId, Name, Network, normal_name};
 use crate::places::Places;
 use crate::plain::{Intervals, about_link};
 use crate::time::Duration;
@@ -101,8 +101,10 @@ impl Reader<'_> {
             }
             let own = self.names(node, id);
             for name in &own {
-                if !names.insert(name.clone()) {
-                    self.problem(node.offset, format!("node `{id}`: the name `{name}` is used already"));
+                if !names.insert(normal_name(name)) {
+                    let message =
+                        format!("node `{id}`: the name `{name}` is used already (case does not count)");
+                    self.problem(node.offset, message);
                 }
             }
             events

@@ -14,7 +14,9 @@ use std::collections::{BTreeMap, VecDeque};
 use std::ops::Range;
 
 use crate::json::ReadProblem;
-use crate::model::{ContingentLink, Delay, Event, EventId, ModelError, Name, Network, Requirement};
+use crate::model::{
+    ContingentLink, Delay, Event, EventId, ModelError, Name, Network, Requirement, normal_name,
+};
 use crate::places::Places;
 use crate::time::{Bound, Duration};
 
@@ -199,10 +201,17 @@ impl<'a> Reader<'a> {
             return None;
         }
         let mut index: BTreeMap<&'a str, EventId> = BTreeMap::new();
+        let mut names: BTreeMap<String, &'a str> = BTreeMap::new();
         let mut events = Vec::new();
         for (number, word) in std::mem::take(&mut self.points) {
             if index.insert(word.text, EventId(events.len() as u32)).is_some() {
                 let message = format!("line {number}: the time-point `{}` is listed twice", word.text);
+                self.problem(word.offset, message);
+            } else if let Some(other) = names.insert(normal_name(word.text), word.text) {
+                let message = format!(
+                    "line {number}: the time-points `{}` and `{other}` have the same name (case does not count)",
+                    word.text
+                );
                 self.problem(word.offset, message);
             }
             events.push(Event { names: vec![Name { text: word.text.to_string(), internal: false }] });

@@ -51,7 +51,7 @@ pub(crate) enum Command {
     Generate(Generate),
     /// Lays out RMPL files: indentation, line breaks and blanks.
     Fmt(Fmt),
-    /// Explains a diagnostic code, such as K0203.
+    /// Explains a diagnostic code, such as K0203, or lists all codes.
     Explain(Explain),
 }
 
@@ -351,7 +351,10 @@ pub(crate) struct Fmt {
 
 #[derive(Debug, Args)]
 pub(crate) struct Explain {
-    /// The code, such as K0203.
+    /// The codes, such as K0203; without any, all codes are listed.
     #[arg(value_name = "CODE")]
-    pub(crate) code: String,
+    pub(crate) codes: Vec<String>,
+    /// List all codes with what they are about.
+    #[arg(long, conflicts_with = "codes")]
+    pub(crate) list: bool,
 }

@@ -57,7 +57,7 @@ pub(crate) enum Command {
     Generate(Generate),
     /// Lays out RMPL files: indentation, line breaks and blanks.
     Fmt(Fmt),
-    /// Explains a diagnostic code, such as K0203.
+    /// Explains a diagnostic code, such as K0203, or lists all codes.
     Explain(Explain),
 }
 
@@ -67,9 +67,18 @@ pub(crate) struct Selection {
     /// The package whose programs are meant; needed only when a file defines more than one.
     #[arg(short = 'P', long, value_name = "NAME")]
     pub(crate) package: Option<String>,
-    /// The control program to start from.
-    #[arg(long, value_name = "NAME", default_value = "main")]
-    pub(crate) entry: String,
+    /// The control program to start from [default: main].
+    #[arg(long, value_name = "NAME")]
+    pub(crate) entry: Option<String>,
+    /// The one to start from if none is asked for.
+    #[arg(skip)]
+    pub(crate) otherwise: Option<String>,
+}
+
+impl Selection {
+    pub(crate) fn entry(&self) -> &str {
+        self.entry.as_deref().or(self.otherwise.as_deref()).unwrap_or("main")
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -243,9 +252,16 @@ pub(crate) struct Check {
     /// What to assume about the delays of news, instead of what is written.
     #[arg(long, value_enum, default_value_t = Delays::AsWritten, value_name = "WHAT")]
     pub(crate) delays: Delays,
-    /// How to print the result; JSON is one document per file, one per line.
-    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
-    pub(crate) format: TextOrJson,
+    /// How to print the result; JSON is one document per file, one per line, SARIF is one log of all files.
+    #[arg(long, value_enum, default_value_t = CheckFormat::Text)]
+    pub(crate) format: CheckFormat,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum CheckFormat {
+    Text,
+    Json,
+    Sarif,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -441,7 +457,10 @@ pub(crate) struct Fmt {
 
 #[derive(Debug, Args)]
 pub(crate) struct Explain {
-    /// The code, such as K0203.
+    /// The codes, such as K0203; without any, all codes are listed.
     #[arg(value_name = "CODE")]
-    pub(crate) code: String,
+    pub(crate) codes: Vec<String>,
+    /// List all codes with what they are about.
+    #[arg(long, conflicts_with = "codes")]
+    pub(crate) list: bool,
 }

@@ -10,47 +10,46 @@ use kirk_network::stnu::TooLarge;
 use kirk_network::{Conflict, Network, Verdict};
 use serde::Serialize;
 
-use crate::args::{Check, Common, Delays, TextOrJson};
+use crate::args::{Check, CheckFormat, Common, Delays};
 use crate::conflict::{self, MemberJson};
 use crate::input::{Input, load};
 use crate::json::line;
 use crate::news::treatment;
 use crate::output::{Status, print, print_line};
 use crate::report::{DiagnosticJson, Reporter};
+use crate::sarif::Log;
 
 pub(crate) fn check(arguments: &Check, common: &Common) -> io::Result<Status> {
     let mut worst = Status::Yes;
+    let mut log = Log::default();
     for file in &arguments.files {
-        worst = worst.max(check_one(file, arguments, common)?);
-    }
-    Ok(worst)
-}
-
-fn check_one(file: &str, arguments: &Check, common: &Common) -> io::Result<Status> {
-    let mut input = load(file, &arguments.selection);
-    let judged = judge_assuming(&mut input, arguments.delays);
-    let status = match &judged {
-        None => Status::Wrong,
-        Some(Judged { conflict: None, .. }) => Status::Yes,
-        Some(Judged { conflict: Some(_), .. }) => Status::No,
-    };
-    let reporter = Reporter::new(&input.sources);
-    match arguments.format {
-        TextOrJson::Json => {
-            let document = CheckJson::new(file, &input, judged.as_ref(), arguments.delays, &reporter);
-            print(&line(&document)?)?;
-        }
-        TextOrJson::Text => {
-            reporter.show(&input.diagnostics, common)?;
-            print_line(&verdict_line(file, &input, judged.as_ref(), arguments))?;
-            if common.verbose
-                && let Some(network) = &input.network
-            {
-                print(&treatment(network))?;
+        let mut input = load(file, &arguments.selection);
+        let judged = judge_assuming(&mut input, arguments.delays);
+        worst = worst.max(match &judged {
+            None => Status::Wrong,
+            Some(Judged { conflict: None, .. }) => Status::Yes,
+            Some(Judged { conflict: Some(_), .. }) => Status::No,
+        });
+        let reporter = Reporter::new(&input.sources);
+        let document = || CheckJson::new(file, &input, judged.as_ref(), arguments.delays, &reporter);
+        match arguments.format {
+            CheckFormat::Json => print(&line(&document())?)?,
+            CheckFormat::Sarif => log.add(&input, &reporter, &document()),
+            CheckFormat::Text => {
+                reporter.show(&input.diagnostics, common)?;
+                print_line(&verdict_line(file, &input, judged.as_ref(), arguments))?;
+                if common.verbose
+                    && let Some(network) = &input.network
+                {
+                    print(&treatment(network))?;
+                }
             }
         }
     }
-    Ok(status)
+    if arguments.format == CheckFormat::Sarif {
+        print(&line(&log.document(worst))?)?;
+    }
+    Ok(worst)
 }
 
 /// The verdict on a network and how long it took.
@@ -155,10 +154,21 @@ fn verdict_line(file: &str, input: &Input, judged: Option<&Judged>, arguments: &
     )
 }
 
+/// `kirk-check/1`.
 #[derive(Serialize)]
-struct CheckJson<'a> {
+pub(crate) struct CheckJson<'a> {
     format: &'static str,
-    file: &'a str,
+    pub(crate) file: &'a str,
+    #[serde(flatten)]
+    pub(crate) verdict: VerdictJson,
+    diagnostics: Vec<DiagnosticJson<'a>>,
+    pub(crate) conflict: Vec<MemberJson>,
+}
+
+/// What was decided, of what, and how long that took.
+#[derive(Clone, Serialize)]
+pub(crate) struct VerdictJson {
+    /// `null` if nothing could be decided.
     controllable: Option<bool>,
     kind: &'static str,
     events: usize,
@@ -166,8 +176,6 @@ struct CheckJson<'a> {
     contingents: usize,
     conservative: bool,
     seconds: f64,
-    diagnostics: Vec<DiagnosticJson<'a>>,
-    conflict: Vec<MemberJson>,
 }
 
 impl<'a> CheckJson<'a> {
@@ -185,13 +193,15 @@ impl<'a> CheckJson<'a> {
         CheckJson {
             format: "kirk-check/1",
             file,
-            controllable: judged.map(|judged| judged.conflict.is_none()),
-            kind: delays.kind(),
-            events: merged.map_or(0, |network| network.events().len()),
-            requirements: merged.map_or(0, |network| network.requirements().len()),
-            contingents: merged.map_or(0, |network| network.contingents().len()),
-            conservative: conflict.is_some_and(|conflict| conflict.conservative),
-            seconds: judged.map_or(0.0, |judged| judged.seconds),
+            verdict: VerdictJson {
+                controllable: judged.map(|judged| judged.conflict.is_none()),
+                kind: delays.kind(),
+                events: merged.map_or(0, |network| network.events().len()),
+                requirements: merged.map_or(0, |network| network.requirements().len()),
+                contingents: merged.map_or(0, |network| network.contingents().len()),
+                conservative: conflict.is_some_and(|conflict| conflict.conservative),
+                seconds: judged.map_or(0.0, |judged| judged.seconds),
+            },
             diagnostics: input.diagnostics.iter().map(|d| reporter.to_json(d)).collect(),
             conflict: match (conflict, network) {
                 (Some(conflict), Some(network)) => conflict::to_json(conflict, network, input, reporter),

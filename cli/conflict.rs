@@ -1,5 +1,6 @@
 //! Why a network is not controllable, as a diagnostic and as JSON.
 
+use kirk_compiler::explain::total;
 use kirk_compiler::{Code, Diagnostic, Span, explain_conflict};
 use kirk_network::json::Seconds;
 use kirk_network::{Conflict, Network, Part, Share};
@@ -18,17 +19,23 @@ pub(crate) fn diagnostic(conflict: &Conflict, network: &Network, input: &Input) 
                 "`{}` cannot be executed in every case: in the worst case {missing} s are missing",
                 network.name()
             );
-            let mut help = String::from("These do not go together:");
-            for share in &conflict.members {
-                help.push_str(&format!("\n  {}", sentence(share, network)));
-            }
-            help.push_str(&format!("\n  in all {} < 0", conflict.total));
+            let place = |part: Part| {
+                let place = input.places.as_ref().and_then(|places| places.of(part))?;
+                Some(Span::new(0, place.start, place.end))
+            };
+            let mut told = conflict.members.iter().filter_map(|share| Some((place(share.part)?, share)));
+            // The message points at the first of them, and the others are beside it.
+            let (span, primary) = told
+                .next()
+                .map_or((Span::default(), String::new()), |(span, share)| (span, sentence(share, network)));
+            let mut help = format!("These do not go together: {} < 0.", total(conflict));
             if conflict.conservative {
                 help.push_str(
-                    "\nThis rests on a chain of links with late news, where kirk is careful: there might be a way.",
+                    " This rests on a chain of links with late news, where kirk is careful: there might be a way.",
                 );
             }
-            Diagnostic::error(Code::NotControllable, Span::default(), message).help(help)
+            let problem = Diagnostic::error(Code::NotControllable, span, message).primary(primary).help(help);
+            told.fold(problem, |problem, (span, share)| problem.label(span, sentence(share, network)))
         }
     }
 }

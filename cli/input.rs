@@ -6,7 +6,7 @@ use std::path::Path;
 
 use kirk_compiler::{Code, Compilation, Diagnostic, Options, Origins, Source, Span, compile};
 use kirk_network::json::ReadProblem;
-use kirk_network::{Network, graphml, json, plain};
+use kirk_network::{Network, Places, graphml, json, plain};
 
 use crate::args::Selection;
 
@@ -22,6 +22,8 @@ pub(crate) struct Input {
     pub(crate) network: Option<Network>,
     /// Where its constraints come from and where its program is named, if it is RMPL.
     pub(crate) origins: Option<(Origins, Span)>,
+    /// Where its constraints stand, if it is a network.
+    pub(crate) places: Option<Places>,
 }
 
 /// RMPL of more bytes than this is no program a person wrote.
@@ -34,7 +36,7 @@ enum Kind {
     Network(Reader),
 }
 
-type Reader = fn(&str) -> Result<Network, Vec<ReadProblem>>;
+type Reader = fn(&str) -> Result<(Network, Places), Vec<ReadProblem>>;
 
 /// Reads and compiles an input file; `-` is standard input.
 pub(crate) fn load(file: &str, selection: &Selection) -> Input {
@@ -43,7 +45,11 @@ pub(crate) fn load(file: &str, selection: &Selection) -> Input {
         Err(diagnostic) => return Input::broken(shown(file), diagnostic),
     };
     match kind(file, &text) {
-        Kind::Network(reader) => network(shown(file), text, reader),
+        Kind::Network(reader) => {
+            let mut input = network(shown(file), text, reader);
+            input.refuse(selection);
+            input
+        }
         Kind::Rmpl => program(vec![Source::new(shown(file), text)], selection),
     }
 }
@@ -78,7 +84,7 @@ pub(crate) fn load_all(files: &[String], selection: &Selection) -> Input {
     if diagnostics.is_empty() {
         program(sources, selection)
     } else {
-        Input { sources, diagnostics, compilation: None, network: None, origins: None }
+        Input { sources, diagnostics, compilation: None, network: None, origins: None, places: None }
     }
 }
 
@@ -119,11 +125,11 @@ fn kind(file: &str, text: &str) -> Kind {
     let start = text.trim_start_matches('\u{feff}').trim_start();
     match extension.as_deref() {
         Some("rmpl" | "lisp") => Kind::Rmpl,
-        Some("json") => Kind::Network(json::read),
-        Some("stnu") => Kind::Network(graphml::read),
-        Some("plainstnu") => Kind::Network(plain::read),
-        _ if start.starts_with('{') => Kind::Network(json::read),
-        _ if start.starts_with('<') && start.contains("graphml") => Kind::Network(graphml::read),
+        Some("json") => Kind::Network(json::read_with_places),
+        Some("stnu") => Kind::Network(graphml::read_with_places),
+        Some("plainstnu") => Kind::Network(plain::read_with_places),
+        _ if start.starts_with('{') => Kind::Network(json::read_with_places),
+        _ if start.starts_with('<') && start.contains("graphml") => Kind::Network(graphml::read_with_places),
         _ => Kind::Rmpl,
     }
 }
@@ -159,23 +165,32 @@ pub(crate) fn read(file: &str, most: u64) -> Result<Vec<u8>, String> {
 }
 
 fn program(sources: Vec<Source>, selection: &Selection) -> Input {
-    let options = Options { package: selection.package.clone(), entry: selection.entry.clone() };
+    let options = Options { package: selection.package.clone(), entry: selection.entry().to_string() };
     let mut compilation = compile(&sources, &options);
     let diagnostics = std::mem::take(&mut compilation.diagnostics);
     let (network, origins) = match compilation.plan.take() {
         Some(plan) => (Some(plan.network), Some((plan.origins, plan.entry))),
         None => (None, None),
     };
-    Input { sources, diagnostics, compilation: Some(compilation), network, origins }
+    Input { sources, diagnostics, compilation: Some(compilation), network, origins, places: None }
 }
 
 fn network(name: &str, text: String, reader: Reader) -> Input {
     let read = reader(&text);
     let sources = vec![Source::new(name, text)];
-    let mut input =
-        Input { sources, diagnostics: Vec::new(), compilation: None, network: None, origins: None };
+    let mut input = Input {
+        sources,
+        diagnostics: Vec::new(),
+        compilation: None,
+        network: None,
+        origins: None,
+        places: None,
+    };
     match read {
-        Ok(network) => input.network = Some(named(network, name)),
+        Ok((network, places)) => {
+            input.network = Some(named(network, name));
+            input.places = Some(places);
+        }
         Err(problems) => {
             input.diagnostics = problems
                 .into_iter()
@@ -206,6 +221,21 @@ impl Input {
             compilation: None,
             network: None,
             origins: None,
+            places: None,
+        }
+    }
+
+    /// Refuses options that choose among programs: a network has none.
+    fn refuse(&mut self, selection: &Selection) {
+        for (option, value) in [("--package", &selection.package), ("--entry", &selection.entry)] {
+            let Some(value) = value else { continue };
+            let message =
+                format!("`{option} {value}` chooses among the programs of a source, and this is a network");
+            self.diagnostics.push(
+                Diagnostic::error(Code::NoPrograms, Span::default(), message)
+                    .help(format!("A network is checked and executed as a whole: leave `{option}` out.")),
+            );
+            self.network = None;
         }
     }
 
@@ -213,7 +243,7 @@ impl Input {
     pub(crate) fn program(&self, selection: &Selection) -> String {
         match (&self.network, &self.compilation) {
             (Some(network), None) => network.name().to_string(),
-            _ => selection.entry.to_lowercase(),
+            _ => selection.entry().to_lowercase(),
         }
     }
 }

@@ -17,6 +17,7 @@ mod output;
 mod replay;
 mod report;
 mod run;
+mod sarif;
 mod timetable;
 mod verify;
 mod watch;

@@ -149,13 +149,13 @@ struct LabelJson<'a> {
 
 #[derive(Serialize)]
 pub(crate) struct SpanJson {
-    start: Position,
-    end: Position,
+    pub(crate) start: Position,
+    pub(crate) end: Position,
 }
 
 /// Counted from 1, columns in characters.
 #[derive(Serialize)]
-struct Position {
-    line: usize,
-    column: usize,
+pub(crate) struct Position {
+    pub(crate) line: usize,
+    pub(crate) column: usize,
 }

@@ -26,12 +26,11 @@ pub(crate) fn verify(arguments: &Verify, common: &Common) -> io::Result<Status> 
             None
         }
     };
-    let entry = match (&arguments.entry, &execution) {
-        (Some(entry), _) => entry.clone(),
-        (None, Some(execution)) => execution.program.clone(),
-        (None, None) => "main".to_string(),
+    let selection = Selection {
+        package: arguments.package.clone(),
+        entry: arguments.entry.clone(),
+        otherwise: execution.as_ref().map(|execution| execution.program.clone()),
     };
-    let selection = Selection { package: arguments.package.clone(), entry };
     let input = load_all(&arguments.files, &selection);
     Reporter::new(&input.sources).show(&input.diagnostics, common)?;
     let (Some(execution), Some(network)) = (execution, &input.network) else { return Ok(Status::Wrong) };

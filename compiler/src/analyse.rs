@@ -49,7 +49,7 @@ pub fn analyse(program: &ast::Program, options: &Options, problems: &mut Problem
     calls::check_recursion(&model, problems);
     model.entry = entry(program, &names, options, problems);
     if let Some(entry) = model.entry {
-        calls::check_use(&model, entry, options.entry.eq_ignore_ascii_case("main"), problems);
+        calls::check_use(&model, program, entry, options, problems);
     }
     model
 }
@@ -159,6 +159,7 @@ fn entry(program: &ast::Program, names: &Names, options: &Options, problems: &mu
     let homes: Vec<String> = match &options.package {
         Some(package) => {
             let text = package.trim_start_matches("#:").trim_start_matches(':').to_lowercase();
+            let text = names.package("", &text).to_string();
             let has_programs = program.programs.iter().any(|p| p.home == text);
             if !defined.contains(&text.as_str()) && !has_programs {
                 let near =
@@ -206,7 +207,9 @@ fn entry(program: &ast::Program, names: &Names, options: &Options, problems: &mu
         names.program(&ident, home)
     };
     let found = homes.iter().find_map(plain);
-    if found.is_none() && !problems.has_lost(&wanted) {
+    // Where nothing is defined and something is wrong, that is why.
+    let nothing = program.programs.is_empty() && problems.has_errors();
+    if found.is_none() && !nothing && !problems.has_lost(&wanted) {
         let candidates: Vec<&str> = program
             .programs
             .iter()

@@ -40,6 +40,22 @@ pub struct Package {
     pub uses: Vec<Ident>,
     /// Single names it takes from other packages.
     pub imports: Vec<Ident>,
+    /// Other names of the package itself.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub nicknames: Vec<Ident>,
+    /// What it calls other packages, and their names.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub local_nicknames: Vec<(Ident, Ident)>,
+    /// The names it offers to others. Kirk lets every name be used from everywhere.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub exports: Vec<Ident>,
+}
+
+impl Package {
+    /// True if this is the name of the package or one of its nicknames.
+    pub fn is_called(&self, name: &str) -> bool {
+        self.name.name == name || self.nicknames.iter().any(|nickname| nickname.name == name)
+    }
 }
 
 /// `(defparameter ...)` or `(defconstant ...)`.

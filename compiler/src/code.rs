@@ -37,6 +37,11 @@ macro_rules! codes {
                 match self { $(Code::$name => $title,)* }
             }
 
+            /// What it means, in a paragraph or a few.
+            pub fn meaning(self) -> &'static str {
+                self.page().meaning.trim()
+            }
+
             fn page(self) -> &'static Page {
                 match self { $(Code::$name => &$page,)* }
             }
@@ -80,6 +85,7 @@ codes! {
     FreeParameters = 311, "the program to start from has parameters", names::FREE_PARAMETERS;
     UnknownLabel = 312, "a label that is not there", names::UNKNOWN_LABEL;
     AmbiguousLabel = 313, "a label or a name that means several occurrences", names::AMBIGUOUS_LABEL;
+    ReservedName = 314, "a name that has a meaning of its own", names::RESERVED_NAME;
     NotANumber = 401, "a bound that is not a number", bounds::NOT_A_NUMBER;
     Negative = 402, "a negative bound", bounds::NEGATIVE;
     LowerAboveUpper = 403, "the lower bound is above the upper bound", bounds::LOWER_ABOVE_UPPER;
@@ -95,6 +101,7 @@ codes! {
     SameEvent = 413, "a constraint between an event and itself", bounds::SAME_EVENT;
     NeverBinds = 414, "an upper bound that is never reached", bounds::NEVER_BINDS;
     UselessNews = 415, "news that comes too irregularly to be of use", bounds::USELESS_NEWS;
+    NeverLate = 416, "an activity that can never start late", bounds::NEVER_LATE;
     UnknownPackage = 501, "a package that is not defined", worlds::UNKNOWN_PACKAGE;
     PackageNotChosen = 502, "several packages and none chosen", worlds::PACKAGE_NOT_CHOSEN;
     UnknownClass = 503, "a class that is not defined", worlds::UNKNOWN_CLASS;
@@ -103,10 +110,12 @@ codes! {
     BadCondition = 506, "not a condition kirk understands", worlds::BAD_CONDITION;
     NotPlannedWith = 507, "conditions are not planned with", worlds::NOT_PLANNED_WITH;
     UnknownType = 508, "not a type kirk knows", worlds::UNKNOWN_TYPE;
+    CircularClass = 509, "a class that extends itself", worlds::CIRCULAR_CLASS;
     NotControllable = 601, "the program cannot be executed in every case", worlds::NOT_CONTROLLABLE;
     CannotRead = 701, "a file that cannot be read", files::CANNOT_READ;
     BadNetwork = 702, "not a network kirk can read", files::BAD_NETWORK;
     NumbersTooLarge = 703, "durations that add up to too much", files::NUMBERS_TOO_LARGE;
+    NoPrograms = 704, "an option that chooses a program, given with a network", files::NO_PROGRAMS;
     BadObservation = 801, "not an observation of this mission", files::BAD_OBSERVATION;
     ImpossibleObservation = 802, "news that the model rules out", files::IMPOSSIBLE_OBSERVATION;
     BadRecord = 803, "not the record of an execution", files::BAD_RECORD;
@@ -137,12 +146,18 @@ pub fn pages() -> String {
          from `compiler/src/code/`.\n",
     );
     for code in Code::ALL {
-        let Page { meaning, wrong, right } = code.page();
-        text.push_str(&format!("\n## {code}: {}\n\n{}\n", code.title(), meaning.trim()));
-        for (title, example) in [("Wrong", wrong), ("Right", right)] {
-            if !example.trim().is_empty() {
-                text.push_str(&format!("\n{title}:\n\n```lisp\n{}\n```\n", example.trim_matches('\n')));
-            }
+        text.push_str(&format!("\n## {code}: {}\n\n{}", code.title(), markdown(*code)));
+    }
+    text
+}
+
+/// The page on a code in Markdown, without its heading.
+pub fn markdown(code: Code) -> String {
+    let Page { meaning, wrong, right } = code.page();
+    let mut text = format!("{}\n", meaning.trim());
+    for (title, example) in [("Wrong", wrong), ("Right", right)] {
+        if !example.trim().is_empty() {
+            text.push_str(&format!("\n{title}:\n\n```lisp\n{}\n```\n", example.trim_matches('\n')));
         }
     }
     text

@@ -4,11 +4,13 @@ use kirk_network::{Conflict, Duration, Network, Part, Share};
 
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
-use crate::lower::{Origin, OriginKind, Origins};
+use crate::lower::{EMPTY, Origin, OriginKind, Origins};
 use crate::source::Span;
 
 /// How origins speak of the joins of a `parallel`.
 const PARALLEL: &str = "this `parallel`";
+/// What the joins of a `parallel` come to where Nature has no say.
+const JOINED: &str = "joined here: without slack, all parts start together and end together";
 
 /// Words a conflict. Its indices are those of `network`, which is the network of the plan, not merged.
 pub fn explain_conflict(
@@ -26,6 +28,10 @@ pub fn explain_conflict(
     let mut places: Vec<(Span, Vec<String>)> = Vec::new();
     for share in &conflict.members {
         let Some((span, text)) = say(share, network, origins) else { continue };
+        // That the parts are joined goes without saying where it is said what is joined.
+        if text == JOINED && places.iter().any(|(known, _)| *known == span) {
+            continue;
+        }
         match places.iter_mut().find(|(known, _)| *known == span) {
             Some((_, texts)) if !texts.contains(&text) => texts.push(text),
             Some(_) => {}
@@ -40,20 +46,7 @@ pub fn explain_conflict(
 
 /// The sum, and what to change.
 fn advice(conflict: &Conflict, network: &Network, origins: &Origins) -> String {
-    let mut shares: Vec<&Share> =
-        conflict.members.iter().filter(|share| share.amount != Duration::ZERO).collect();
-    shares.sort_by_key(|share| share.amount < Duration::ZERO);
-    let mut sum = String::new();
-    for share in &shares {
-        let magnitude = Duration::from_micros(share.amount.as_micros().saturating_abs());
-        let sign = match (share.amount < Duration::ZERO, sum.is_empty()) {
-            (true, true) => "-",
-            (true, false) => " - ",
-            (false, true) => "",
-            (false, false) => " + ",
-        };
-        sum.push_str(&format!("{sign}{magnitude}"));
-    }
+    let mut text = format!("These do not go together: {} < 0.", total(conflict));
     let has = |wanted: &dyn Fn(Part) -> bool| conflict.members.iter().any(|share| wanted(share.part));
     let late = has(&|part| matches!(part, Part::DelayMax(_)));
     let joined = has(&|part| match part {
@@ -63,6 +56,10 @@ fn advice(conflict: &Conflict, network: &Network, origins: &Origins) -> String {
                 && ends.is_some_and(|r| network.link_of(r.from).is_some() || network.link_of(r.to).is_some())
         }
         _ => false,
+    });
+    let side_by_side = has(&|part| {
+        matches!(part, Part::Join(index)
+        if origins.requirements.get(index).is_some_and(|origin| origin.subject == PARALLEL))
     });
     let bounded = has(&|part| {
         matches!(part, Part::RequirementUpper(index)
@@ -75,6 +72,9 @@ fn advice(conflict: &Conflict, network: &Network, origins: &Origins) -> String {
     if joined {
         advice.push("slack (`:slack t`) where an end that Nature decides has to meet another event");
     }
+    if side_by_side && !joined {
+        advice.push("slack (`:slack t`) in the `parallel`");
+    }
     if has(&|part| matches!(part, Part::LinkUpper(_) | Part::LinkLower(_))) {
         advice.push("a narrower contingent duration");
     }
@@ -86,7 +86,7 @@ fn advice(conflict: &Conflict, network: &Network, origins: &Origins) -> String {
         Some((last, _)) => format!(" It would take {last}."),
         None => String::new(),
     };
-    let mut text = format!("These do not go together: {sum} = {} < 0.{advice}", conflict.total);
+    text.push_str(&advice);
     if conflict.conservative {
         text.push_str(
             " This \"no\" rests on a chain of activities of which the first is heard late; a cleverer use of that news \
@@ -96,8 +96,32 @@ fn advice(conflict: &Conflict, network: &Network, origins: &Origins) -> String {
     text
 }
 
+/// The amounts as a sum with its result: `20 - 10 - 15 = -5`.
+pub fn total(conflict: &Conflict) -> String {
+    let (sum, total) = (sum(&conflict.members), conflict.total.to_string());
+    if sum == total { total } else { format!("{sum} = {total}") }
+}
+
+/// The amounts as a sum: `20 - 10 - 15`.
+pub(crate) fn sum(members: &[Share]) -> String {
+    let mut shares: Vec<&Share> = members.iter().filter(|share| share.amount != Duration::ZERO).collect();
+    shares.sort_by_key(|share| share.amount < Duration::ZERO);
+    let mut sum = String::new();
+    for share in &shares {
+        let magnitude = Duration::from_micros(share.amount.as_micros().saturating_abs());
+        let sign = match (share.amount < Duration::ZERO, sum.is_empty()) {
+            (true, true) => "-",
+            (true, false) => " - ",
+            (false, true) => "",
+            (false, false) => " + ",
+        };
+        sum.push_str(&format!("{sign}{magnitude}"));
+    }
+    sum
+}
+
 /// What one part of the conflict says, and where. `None` for what a user need not know.
-fn say(share: &Share, network: &Network, origins: &Origins) -> Option<(Span, String)> {
+pub(crate) fn say(share: &Share, network: &Network, origins: &Origins) -> Option<(Span, String)> {
     if share.times == 0 && !matches!(share.part, Part::Join(_)) {
         return None;
     }
@@ -148,15 +172,19 @@ fn say(share: &Share, network: &Network, origins: &Origins) -> Option<(Span, Str
             };
             (origin.places[3], text)
         }
-        // What merging made one event is worth a word only where Nature has a say in both.
+        // That one follows the other goes without saying; that they run side by side, or that nothing takes time, not.
         Part::Join(index) => {
             let (requirement, origin) = requirement(index)?;
             let by_nature =
                 network.link_of(requirement.from).is_some() || network.link_of(requirement.to).is_some();
-            if !by_nature || origin.subject != PARALLEL {
-                return None;
+            match (origin.subject == PARALLEL, by_nature) {
+                (true, true) => (origin.span, origin.text.clone()),
+                (true, false) => (origin.span, JOINED.to_string()),
+                (false, _) if origin.text.ends_with(EMPTY) => {
+                    (origin.span, format!("joined here: {}", origin.text))
+                }
+                (false, _) => return None,
             }
-            (origin.span, origin.text.clone())
         }
         Part::AfterOrigin => return None,
     };

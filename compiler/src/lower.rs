@@ -59,6 +59,9 @@ pub enum OriginKind {
     Between,
 }
 
+/// What is said of a form without parts.
+pub(crate) const EMPTY: &str = "is empty and takes no time";
+
 /// Builds the network. `None` only if the tree is not what `expand` makes.
 pub fn lower(root: &Episode) -> Option<Plan> {
     let mut lowering = Lowering {
@@ -145,13 +148,7 @@ impl Lowering {
             }
         }
         if episode.parts.is_empty() && !matches!(episode.kind, Kind::Primitive | Kind::Delay) {
-            self.link(
-                ends.0,
-                ends.1,
-                OriginKind::Join,
-                episode,
-                format!("{subject} is empty and takes no time"),
-            );
+            self.link(ends.0, ends.1, OriginKind::Join, episode, format!("{subject} {EMPTY}"));
         }
         ends
     }

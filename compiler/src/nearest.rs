@@ -18,7 +18,7 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         {
             longer = Some(candidate);
         }
-        let limit = best.map_or(word.len().max(candidate.len()) / 3 + 1, |(distance, _)| distance);
+        let limit = best.map_or((word.len().max(candidate.len()) / 3).max(1), |(distance, _)| distance);
         let length = candidate.chars().count();
         if length.abs_diff(word.len()) > limit || length > 64 {
             continue;
@@ -70,6 +70,8 @@ mod tests {
         assert_eq!(nearest("with-temporal-constrain", known), Some("with-temporal-constraint"));
         assert_eq!(nearest("shower", known), None);
         assert_eq!(nearest("x", ["a", "b"]), None);
+        assert_eq!(nearest("wait", ["main"]), None);
+        assert_eq!(nearest("seq", ["let", "sequence"]), Some("sequence"));
         assert_eq!(nearest("par", known), Some("parallel"));
         assert_eq!(nearest("", known), None);
     }

@@ -1,8 +1,10 @@
 //! Notes on models that are legal and may surprise.
 
 mod bounds;
+mod latency;
 
 pub use bounds::notes_on_bounds;
+pub use latency::notes_on_latency;
 
 use std::collections::BTreeMap;
 

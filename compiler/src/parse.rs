@@ -6,12 +6,15 @@ mod body;
 mod class;
 mod condition;
 mod declaration;
+mod elsewhere;
 mod label;
 mod options;
+mod package;
 
 pub(crate) use body::OPERATORS;
+pub(crate) use elsewhere::instead_of_operator;
 
-use crate::ast::{ControlProgram, Ident, NamedNumber, Package, Program};
+use crate::ast::{ControlProgram, Ident, NamedNumber, Program};
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::form::{Form, FormKind, clip, write};
@@ -26,6 +29,7 @@ pub const DEFAULT_PACKAGE: &str = "cl-user";
 
 /// Parses the top-level forms of one source and adds what they define to `program`.
 pub fn parse(forms: &[Form], program: &mut Program, problems: &mut Problems) {
+    reserved_names(forms, problems);
     let mut home = DEFAULT_PACKAGE.to_string();
     for form in forms {
         let Some((word, rest)) = form.call() else {
@@ -52,36 +56,12 @@ pub fn parse(forms: &[Form], program: &mut Program, problems: &mut Problems) {
             "defparameter" | "defconstant" => {
                 program.parameters.extend(named_number(form, rest, &home, problems));
             }
-            "defpackage" => program.packages.extend(package(form, rest, problems)),
-            "in-package" => match rest {
-                [name] if name.designator().is_some() => {
-                    home = name.designator().unwrap_or_default();
-                    let known = program.packages.iter().map(|package| package.name.name.as_str());
-                    let known: Vec<&str> = known.chain([DEFAULT_PACKAGE]).collect();
-                    if !known.contains(&home.as_str()) {
-                        problems.push(
-                            Diagnostic::error(
-                                Code::UnknownPackage,
-                                name.span,
-                                format!("the package `{}` is not defined", clip(&home)),
-                            )
-                            .primary("not defined above")
-                            .maybe_help(Some(
-                                nearest(&home, known.iter().copied().filter(|name| *name != DEFAULT_PACKAGE))
-                                    .map_or_else(
-                                        || format!("Put `(defpackage #:{})` before it.", clip(&home)),
-                                        |name| format!("Did you mean `{name}`?"),
-                                    ),
-                            )),
-                        );
-                    }
+            "defpackage" => program.packages.extend(package::package(form, rest, problems)),
+            "in-package" => {
+                if let Some(entered) = package::entered(form, rest, &program.packages, problems) {
+                    home = entered;
                 }
-                _ => problems.push(expected(
-                    form,
-                    "`in-package` needs one package",
-                    "Write `(in-package #:name)`.",
-                )),
-            },
+            }
             _ => {}
         }
         let is_class = word == "defclass";
@@ -103,7 +83,32 @@ fn control_program(
         problems.lose_definitions();
         return None;
     };
-    let Some(name) = ident(name) else {
+    // In another dress, it is as clear what the name is.
+    let heading = name.list().filter(|items| items.first().is_some_and(|first| first.symbol().is_some()));
+    let plain = match (&name.kind, heading) {
+        (FormKind::Quote(inner), _) => ident(inner).map(|plain| Ident { span: name.span, ..plain }),
+        (FormKind::String(text), _) if !text.is_empty() && !text.contains(char::is_whitespace) => {
+            Some(Ident { package: None, name: text.to_lowercase(), span: name.span })
+        }
+        (_, Some(items)) => ident(&items[0]),
+        _ => None,
+    };
+    if let Some(plain) = &plain
+        && form.call().is_some_and(|(word, _)| word == "define-control-program")
+    {
+        let parameters = heading.map_or("()".to_string(), |items| {
+            write(&Form { span: name.span, kind: FormKind::List(items[1..].to_vec()) })
+        });
+        let help =
+            format!("Write `(define-control-program {} {} ...)`.", clip(&plain.name), clip(&parameters));
+        problems.push(unexpected(name, "the plain name of the program", &help));
+        // Or the name is missing, and these are the parameters.
+        if heading.is_some() {
+            problems.lose_definitions();
+            problems.lose(name);
+        }
+    }
+    let Some(name) = ident(name).or(plain) else {
         if !name.is_error() {
             problems.push(unexpected(name, "the name of the program", SHAPE));
         }
@@ -123,12 +128,19 @@ fn control_program(
         span: form.span,
         damaged: problems.is_damaged(form.span),
     };
-    let rest = match rest.split_first() {
-        Some((Form { kind: FormKind::List(items), .. }, rest)) if !is_body(rest, items) => {
+    // `(define-control-program (drive site) ...)`: the parameters are with the name.
+    let listed = rest.first().and_then(Form::list).is_some_and(|items| !is_body(&rest[1..], items));
+    let inside = heading.map(|items| &items[1..]).filter(|inside| !inside.is_empty() || !listed);
+    let rest = match (inside, rest.split_first()) {
+        (Some(inside), _) => {
+            program.parameters = parameters(inside, problems);
+            rest
+        }
+        (_, Some((Form { kind: FormKind::List(items), .. }, rest))) if !is_body(rest, items) => {
             program.parameters = parameters(items, problems);
             rest
         }
-        Some((nil, rest)) if nil.word() == Some("nil") => rest,
+        (_, Some((nil, rest))) if nil.word() == Some("nil") => rest,
         _ => {
             let message = format!("the program `{}` has no parameter list", clip(&program.name.name));
             problems.push(
@@ -140,24 +152,80 @@ fn control_program(
             rest
         }
     };
-    for (index, item) in rest.iter().enumerate() {
+    content(rest, &mut program, problems);
+    Some(program)
+}
+
+/// What stands after the parameters: documentation, declarations, the body.
+fn content(items: &[Form], program: &mut ControlProgram, problems: &mut Problems) {
+    let mut body: Vec<Form> = Vec::new();
+    let mut rest = items;
+    while let Some((item, after)) = rest.split_first() {
+        rest = after;
         match &item.kind {
             FormKind::String(text)
-                if program.documentation.is_none() && program.body.is_empty() && index < 2 =>
+                if program.documentation.is_none() && body.is_empty() && items.len() - after.len() < 3 =>
             {
                 program.documentation = Some(text.clone());
             }
             FormKind::List(_) if is_declaration(item, problems) => {
-                declaration::declare(item, &mut program, problems);
+                declaration::declare(&item.list().unwrap_or_default()[1..], program, problems);
             }
-            _ => {
-                let before = program.body.len();
-                program.body.extend(body::body(item, problems));
-                program.damaged |= program.body.len() == before;
+            FormKind::Keyword(_) if body.is_empty() && program.duration.is_some() => {
+                let value = after.first().filter(|value| value.list().is_none());
+                rest = &after[usize::from(value.is_some())..];
+                declaration::fallen_out(item, value, program, problems);
+                program.damaged = true;
             }
+            _ => body.push(item.clone()),
         }
     }
-    Some(program)
+    if declaration::are_bare(&body, program.duration.is_some()) {
+        problems.push(expected(
+            &body[0],
+            "this declaration stands outside of `(declare ...)`",
+            "Write `(declare (primitive) (duration (simple ...)))` after the parameter list.",
+        ));
+        declaration::declare(&body, program, problems);
+        return;
+    }
+    let before = problems.errors();
+    program.body = body::bodies(&body, problems);
+    program.damaged |= problems.errors() > before || program.body.len() < body.len();
+}
+
+/// Refuses programs that have the names of operators: `(delay)` could never mean them.
+fn reserved_names(forms: &[Form], problems: &mut Problems) {
+    let mut taken: Vec<&str> = Vec::new();
+    for form in forms {
+        let Some(("define-control-program", [name, ..])) = form.call() else { continue };
+        let Some(word) = name.word().filter(|word| is_reserved(word)) else { continue };
+        problems.push(reserved(name, word, "a program"));
+        taken.push(word);
+    }
+    // What is wrong with the calls of such a program, read as the operator, follows from that.
+    let mut open: Vec<&Form> = if taken.is_empty() { Vec::new() } else { forms.iter().collect() };
+    while let Some(form) = open.pop() {
+        match form.call() {
+            Some((word, _)) if taken.contains(&word) => problems.mute(form.span),
+            _ => open.extend(form.list().unwrap_or_default()),
+        }
+    }
+}
+
+fn is_reserved(word: &str) -> bool {
+    OPERATORS.contains(&word) || matches!(word, "declare" | "t" | "nil")
+}
+
+fn reserved(name: &Form, word: &str, what: &str) -> Diagnostic {
+    let meaning = match word {
+        "t" => "`t` means yes",
+        "nil" => "`nil` means no, or nothing",
+        _ => "it is an operator",
+    };
+    Diagnostic::error(Code::ReservedName, name.span, format!("{what} cannot be called `{word}`"))
+        .primary(meaning)
+        .help(format!("Give it another name, such as `{word}-1`, here and wherever it is used."))
 }
 
 /// True for `(declare ...)`, also if it is misspelt and what is in it leaves no doubt.
@@ -206,6 +274,10 @@ fn parameters(items: &[Form], problems: &mut Problems) -> Vec<Ident> {
                 .primary("a parameter was expected")
                 .help("Every parameter of a control program is given by place; there are no optional ones."),
             ),
+            Some(name) if matches!(name.name.as_str(), "t" | "nil") => {
+                problems.push(reserved(item, &name.name, "a parameter"));
+                names.push(name);
+            }
             Some(name) => {
                 if let Some(first) = names.iter().find(|known| known.name == name.name) {
                     let message = format!("the parameter `{}` is there twice", clip(&name.name));
@@ -251,61 +323,10 @@ fn named_number(form: &Form, rest: &[Form], home: &str, problems: &mut Problems)
     }
 }
 
-fn package(form: &Form, rest: &[Form], problems: &mut Problems) -> Option<Package> {
-    const OPTIONS: [&str; 8] =
-        ["use", "import-from", "export", "nicknames", "documentation", "shadow", "size", "local-nicknames"];
-    let Some((name, rest)) = rest.split_first() else {
-        problems.push(expected(form, "this package has no name", "Write `(defpackage #:name)`."));
-        return None;
-    };
-    let Some(text) = name.designator() else {
-        if !name.is_error() {
-            problems.push(unexpected(name, "the name of the package", "Write `(defpackage #:name)`."));
-        }
-        return None;
-    };
-    let name = Ident { package: None, name: text, span: name.span };
-    let mut package = Package { name, uses: Vec::new(), imports: Vec::new() };
-    let designated = |item: &Form| Some(Ident { package: None, name: item.designator()?, span: item.span });
-    for option in rest {
-        let Some((keyword, values)) = option.list().and_then(|items| items.split_first()) else {
-            if !option.is_error() {
-                problems.push(unexpected(option, "an option such as `(:use #:other)`", "Options are lists."));
-            }
-            continue;
-        };
-        match keyword.keyword() {
-            Some("use") => package.uses.extend(values.iter().filter_map(designated)),
-            Some("import-from") => {
-                let from = values.first().and_then(Form::designator);
-                package.imports.extend(
-                    values
-                        .iter()
-                        .skip(1)
-                        .filter_map(designated)
-                        .map(|name| Ident { package: from.clone(), ..name }),
-                );
-            }
-            Some(word) if OPTIONS.contains(&word) => {}
-            Some(word) => problems.push(
-                Diagnostic::error(
-                    Code::UnknownKeyword,
-                    keyword.span,
-                    format!("a package has no option `:{}`", clip(word)),
-                )
-                .primary("not an option of `defpackage`")
-                .maybe_help(
-                    did_you_mean(word, OPTIONS).map(|help| help.replace('`', "`:").replace("`:?", "`?")),
-                ),
-            ),
-            None => problems.push(unexpected(keyword, "a keyword such as `:use`", "Options are lists.")),
-        }
-    }
-    Some(package)
-}
-
 fn unknown_top_level(form: &Form, problems: &mut Problems) {
-    let word = form.call().map_or("", |(word, _)| word);
+    // Of a name with a package, such as `asdf:defsystem`, only the name counts.
+    let symbol = form.list().and_then(|items| items.first()).and_then(Form::symbol);
+    let word = symbol.map_or("", |symbol| symbol.name.as_str());
     let (message, help) = if OPERATORS.contains(&word) {
         (
             format!("`{word}` stands outside of every program"),
@@ -325,7 +346,9 @@ fn unknown_top_level(form: &Form, problems: &mut Problems) {
     } else if word.is_empty() {
         (format!("{} is not a definition", form.describe()), None)
     } else {
-        (format!("`{}` is not a definition kirk knows", clip(word)), did_you_mean(word, DEFINITIONS))
+        let instead = elsewhere::instead_of_definition(word).map(str::to_string);
+        let message = format!("`{}` is not a definition kirk knows", clip(word));
+        (message, instead.or_else(|| did_you_mean(word, DEFINITIONS)))
     };
     let at = form.list().and_then(|items| items.first()).map_or(form.span, |first| first.span);
     problems.push(

@@ -12,7 +12,7 @@ use crate::diagnostic::Diagnostic;
 use crate::form::{Form, FormKind, Symbol, clip};
 use crate::problem::Problems;
 use crate::source::{Source, Span};
-use foreign::{begins_definition, foreign_line, foreign_text};
+use foreign::{begins_definition, foreign_line, foreign_text, foreign_token};
 use token::{Kind, Token, Tokens};
 
 /// How deep forms may be nested.
@@ -152,6 +152,7 @@ impl<'a> Reader<'a> {
                 }
 
                 _ if self.stack.is_empty() => self.stray(token),
+                _ if self.skipped_as_foreign(token) => {}
                 Kind::Unreadable => self.unreadable(token),
                 _ => self.atom(token),
             }
@@ -286,6 +287,10 @@ impl<'a> Reader<'a> {
                     self.unclosed_string(token.start);
                     return;
                 }
+                if self.text[token.end..].starts_with(|c: char| c.is_alphanumeric()) {
+                    self.string_goes_on(token);
+                    return;
+                }
                 FormKind::String(unescape(&text[1..text.len() - 1]))
             }
             Kind::UnclosedString => {
@@ -300,6 +305,16 @@ impl<'a> Reader<'a> {
         if self.skipped == 0 {
             self.finish(Form { span, kind });
         }
+    }
+
+    /// Reports comments and strings as they are written elsewhere, and goes on behind them.
+    fn skipped_as_foreign(&mut self, token: Token) -> bool {
+        let Some((length, problem)) = foreign_token(&self.text[token.start..]) else { return false };
+        let shown = self.text[token.start..token.start + length].lines().next().unwrap_or("");
+        let span = self.span(token.start, token.start + shown.len());
+        self.problems.push(problem(span));
+        self.tokens.seek(token.start + length);
+        true
     }
 
     /// Reports what has no meaning, and makes the best of it: brackets hold a list together, a mark of Lisp belongs to
@@ -319,6 +334,23 @@ impl<'a> Reader<'a> {
             _ if self.skipped == 0 => self.finish(Form { span, kind: FormKind::Error }),
             _ => {}
         }
+    }
+
+    /// Reports a string that ends in the middle of a line of words: a quotation mark inside of it.
+    fn string_goes_on(&mut self, token: Token) {
+        let line = self.text[token.end..].lines().next().unwrap_or("");
+        let span = self.span(token.end - 1, token.end);
+        self.problems.push(
+            Diagnostic::error(Code::UnclosedString, span, "this quotation mark ends the string")
+                .primary("and words follow without a blank")
+                .label(self.span(token.start, token.start + 1), "the string begins here")
+                .help("Inside a string, a quotation mark is written `\\\"`."),
+        );
+        let end = line.rfind('"').map_or(token.end, |at| token.end + at + 1);
+        if self.skipped == 0 {
+            self.finish(Form { span: self.span(token.start, end), kind: FormKind::Error });
+        }
+        self.tokens.seek(end);
     }
 
     /// Reports a string without an end and goes on with the line after the one it begins on.
@@ -487,8 +519,10 @@ impl<'a> Reader<'a> {
         self.line_start = self.text[..self.tokens.position()].rfind('\n').map_or(0, |n| n + 1);
     }
 
+    /// From `start`, which is on the boundary of a character, to the first boundary from `end` on.
     fn span(&self, start: usize, end: usize) -> Span {
-        Span::new(self.source, start, end.min(self.text.len()))
+        let end = (end..self.text.len()).find(|end| self.text.is_char_boundary(*end));
+        Span::new(self.source, start, end.unwrap_or(self.text.len()))
     }
 }
 
@@ -516,7 +550,11 @@ fn unreadable(text: &str, span: Span) -> Diagnostic {
     let plain = |c: char| if c.is_control() { c.escape_debug().to_string() } else { c.to_string() };
     let shown: String = clip(text).chars().map(plain).collect();
     let (message, help) = match text.chars().next() {
-        Some('`' | ',') => (
+        Some(',') => (
+            "a comma has no meaning in RMPL".to_string(),
+            Some("Between the elements of a form there are blanks; a decimal number has a point: `1.5`."),
+        ),
+        Some('`') => (
             format!("`{shown}` is for Lisp macros, which kirk does not run"),
             Some("Write the form out as it should be."),
         ),

@@ -11,7 +11,7 @@ use kirk_compiler::{Code, Options, code};
 fn every_bad_file_is_told_what_is_wrong_with_it() {
     let mut covered: BTreeSet<String> = BTreeSet::new();
     for (name, text) in common::sources("tests/rmpl/bad") {
-        let compiled = common::compile(&text);
+        let compiled = common::compile_with(&text, &common::options_in(&text));
         let found: BTreeSet<String> = compiled.diagnostics.iter().map(|d| d.code.to_string()).collect();
         let said = common::diagnostics(&text, &compiled.diagnostics);
         assert!(found.contains(&name[..5]), "{name}:\n{said}");

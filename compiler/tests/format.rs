@@ -94,6 +94,39 @@ proptest! {
     }
 
     #[test]
+    fn a_random_program_keeps_its_meaning_and_its_comments(body in body(), gaps in proptest::collection::vec(0..6_usize, 40)) {
+        let program = format!(
+            "(define-control-program~a~(n)~(declare~(primitive)~(duration~(simple~:upper-bound~(+~n~5)))))\n\
+             (define-control-program~main~()~\"what~it~is\"~{body})\n"
+        );
+        // Every gap becomes blanks, a line break, or a comment with a number of its own.
+        let mut text = String::new();
+        for (number, part) in program.split('~').enumerate() {
+            text.push_str(part);
+            let inside_string = text.matches('"').count() == 1;
+            text.push_str(&match gaps[number % gaps.len()] {
+                _ if inside_string => "~".to_string(),
+                0 => "\n".to_string(),
+                1 => format!("  ; note {number}\n"),
+                2 => format!("\n\n ;; note {number}\n"),
+                3 => format!(" #| note {number} |# "),
+                _ => " ".to_string(),
+            });
+        }
+        let once = format(&text).unwrap();
+        prop_assert_eq!(&format(&once).unwrap(), &once);
+        let notes = |text: &str| -> Vec<String> {
+            let after = text.split("note ").skip(1);
+            after.map(|rest| rest.chars().take_while(char::is_ascii_digit).collect()).collect()
+        };
+        prop_assert_eq!(notes(&text), notes(&once), "{}\n{}", text, once);
+        let plan = |text: &str| compile(&[Source::new("x", text)], &Options::default()).plan;
+        let before = plan(&text);
+        prop_assert!(before.is_some(), "{}", text);
+        prop_assert_eq!(before.map(|plan| common::network(&plan)), plan(&once).map(|plan| common::network(&plan)));
+    }
+
+    #[test]
     fn any_words_are_laid_out_once_and_for_all(words in proptest::collection::vec(0..WORDS.len(), 0..60)) {
         let text: String = words.iter().map(|word| WORDS[*word]).collect::<Vec<_>>().join(" ");
         for text in [format!("(a {text}"), text] {
@@ -106,6 +139,26 @@ proptest! {
             }
         }
     }
+}
+
+/// A body form with `~` for every gap.
+fn body() -> impl Strategy<Value = String> {
+    let leaf = prop_oneof![
+        (0..9_u32).prop_map(|n| format!("(a~{n})")),
+        (0..9_u32, 9..20_u32).prop_map(|(low, high)| format!("(delay~{low}~{high})")),
+        Just("(sequence~())".to_string()),
+    ];
+    leaf.prop_recursive(4, 30, 5, |inner| {
+        let parts = proptest::collection::vec(inner, 1..5).prop_map(|parts| parts.join("~"));
+        (parts, 0..6_usize, 1..4_u32).prop_map(|(parts, kind, n)| match kind {
+            0 => format!("(sequence~(:slack~t)~{parts})"),
+            1 => format!("(parallel~(:slack~t)~{parts})"),
+            2 => format!("(sequence~{parts})"),
+            3 => format!("(with-temporal-constraint~(simple-temporal~:lower-bound~{n})~{parts})"),
+            4 => format!("(dotimes~(i~{n})~{parts})"),
+            _ => format!("(let~((x~{n}))~{parts})"),
+        })
+    })
 }
 
 /// The text with other blanks: every run of blanks outside of strings and comments becomes another one. Blank lines and the

@@ -50,6 +50,16 @@ fn a_mission_cut_anywhere_gives_a_result() {
     }
 }
 
+/// What fuzzing found: every file in `tests/crashes` once ended in a panic.
+#[test]
+fn what_once_crashed_gives_a_result() {
+    let kept = common::sources("tests/crashes");
+    assert!(!kept.is_empty());
+    for (_, text) in kept {
+        result(&text);
+    }
+}
+
 #[test]
 fn nesting_of_any_depth_gives_a_result() {
     on_a_small_stack(|| {

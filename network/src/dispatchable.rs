@@ -185,14 +185,15 @@ impl Outgoing {
 }
 
 /// Groups of nodes at fixed distances from one another, each with a leader: its earliest node.
-struct Rigid {
-    leader: Vec<u32>,
+#[derive(Debug)]
+pub(crate) struct Rigid {
+    pub(crate) leader: Vec<u32>,
     /// How long after its leader a node comes.
-    offset: Vec<i64>,
+    pub(crate) offset: Vec<i64>,
 }
 
 impl Rigid {
-    fn new(stnu: &Stnu, edges: &[Edge], potential: &[i64]) -> Rigid {
+    pub(crate) fn new(stnu: &Stnu, edges: &[Edge], potential: &[i64]) -> Rigid {
         // On a cycle of weight 0 every edge is tight, and every cycle of tight edges has weight 0.
         let tight = edges
             .iter()

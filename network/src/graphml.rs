@@ -21,9 +21,11 @@ mod write;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Display;
+use std::ops::Range;
 
 use crate::json::ReadProblem;
-use crate::model::{ContingentLink, Delay, Event, EventId, Name, Network};
+use crate::model::{ContingentLink, Delay, Event, EventId, Name, Network, normal_name};
+use crate::places::Places;
 use crate::plain::{Intervals, about_link};
 use crate::time::Duration;
 use scan::{Data, Document, Element, scan};
@@ -35,8 +37,13 @@ pub use write::{WriteError, write};
 /// Edges in opposite directions between two events become one requirement, where the first of the two stands. Entities
 /// other than those of XML itself are not expanded.
 pub fn read(text: &str) -> Result<Network, Vec<ReadProblem>> {
+    read_with_places(text).map(|(network, _)| network)
+}
+
+/// Reads a `.stnu` file as [`read`] does, and remembers where its constraints stand.
+pub fn read_with_places(text: &str) -> Result<(Network, Places), Vec<ReadProblem>> {
     let (document, problems) = scan(text);
-    let mut reader = Reader { problems };
+    let mut reader = Reader { text, problems };
     let network = document.and_then(|document| reader.network(&document));
     let mut problems = reader.problems;
     problems.sort_by_key(|problem| problem.offset);
@@ -60,12 +67,13 @@ struct Edge<'d> {
     label: Option<CaseLabel>,
 }
 
-struct Reader {
+struct Reader<'t> {
+    text: &'t str,
     problems: Vec<ReadProblem>,
 }
 
-impl Reader {
-    fn network(&mut self, document: &Document) -> Option<Network> {
+impl Reader<'_> {
+    fn network(&mut self, document: &Document) -> Option<(Network, Places)> {
         let mut name = String::new();
         for data in &document.graph_data {
             match data.key.as_str() {
@@ -93,8 +101,10 @@ impl Reader {
             }
             let own = self.names(node, id);
             for name in &own {
-                if !names.insert(name.clone()) {
-                    self.problem(node.offset, format!("node `{id}`: the name `{name}` is used already"));
+                if !names.insert(normal_name(name)) {
+                    let message =
+                        format!("node `{id}`: the name `{name}` is used already (case does not count)");
+                    self.problem(node.offset, message);
                 }
             }
             events
@@ -114,7 +124,7 @@ impl Reader {
         for edge in &edges {
             let ordinary = !edge.contingent || edge.label.is_some();
             if let Some(weight) = edge.value.filter(|_| ordinary) {
-                intervals.add(edge.from, edge.to, weight);
+                intervals.add(edge.from, edge.to, weight, self.tag(edge.element));
             }
         }
         let links = self.links(&edges, &ids);
@@ -129,7 +139,10 @@ impl Reader {
         }
         let contingents = links.iter().map(|(_, link)| *link).collect();
         match Network::new(name, origin?, events, intervals.requirements, contingents) {
-            Ok(network) => Some(network),
+            Ok(network) => {
+                let contingents = links.iter().map(|(element, _)| self.tag(element)).collect();
+                Some((network, Places { requirements: intervals.places, contingents }))
+            }
             Err(errors) => {
                 for error in errors {
                     let (index, message) = about_link(&error);
@@ -143,6 +156,12 @@ impl Reader {
                 None
             }
         }
+    }
+
+    /// The opening tag of an element.
+    fn tag(&self, element: &Element) -> Range<usize> {
+        let rest = self.text.get(element.offset..).unwrap_or("");
+        element.offset..element.offset + rest.find('>').map_or(rest.len(), |at| at + 1)
     }
 
     /// The names of a node: its `Names`, else its id.

@@ -1,15 +1,20 @@
 //! The network file `kirk-network/1`: seconds in decimal, exact to a microsecond, nothing unknown.
 
+mod fields;
+
 use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
 use serde::ser::{SerializeMap, SerializeSeq, Serializer};
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
+
+use fields::{CONTINGENT, Content, REQUIREMENT, nearest, plainly};
 
 use crate::controllability::Wait;
 use crate::dispatchable::Dispatchable;
 use crate::model::{
     ContingentLink, Delay, Event, EventId, ModelError, Name, Network, Requirement, normal_name,
 };
+use crate::places::Places;
 use crate::stnu::{Edge, Link, NONE};
 use crate::time::{Bound, Duration};
 
@@ -27,12 +32,17 @@ pub struct ReadProblem {
 
 /// Reads a network file, or lists everything that is wrong with it.
 pub fn read(text: &str) -> Result<Network, Vec<ReadProblem>> {
+    read_with_places(text).map(|(network, _)| network)
+}
+
+/// Reads a network file as [`read`] does, and remembers where its constraints stand.
+pub fn read_with_places(text: &str) -> Result<(Network, Places), Vec<ReadProblem>> {
     let Fields(fields) = serde_json::from_str(text).map_err(|error| vec![locate(text, &error)])?;
     let mut reader = Reader { text, problems: Vec::new() };
     let file = reader.file(fields);
     let network = reader.network(&file);
     match network {
-        Some(network) if reader.problems.is_empty() => Ok(network),
+        Some(found) if reader.problems.is_empty() => Ok(found),
         _ => {
             reader.problems.sort_by_key(|problem| problem.offset);
             Err(reader.problems)
@@ -213,16 +223,57 @@ impl<'a> Reader<'a> {
         field.and_then(|raw| self.element(name, raw)).unwrap_or_default()
     }
 
-    /// An element that has to be an object.
-    fn object<T: Deserialize<'a>>(&mut self, name: &str, raw: &'a RawValue) -> Option<T> {
-        if raw.get().starts_with('{') {
-            return self.element(name, raw);
+    /// An element that has to be an object with these fields.
+    fn object<T: Deserialize<'a>>(
+        &mut self,
+        name: &str,
+        raw: &'a RawValue,
+        fields: &[(&'static str, Content)],
+    ) -> Option<T> {
+        if !raw.get().starts_with('{') {
+            self.problem(raw, format!("{name}: expected an object, {{\"from\": ..., \"to\": ..., ...}}"));
+            return None;
         }
-        self.problem(raw, format!("{name}: expected an object, {{\"from\": ..., \"to\": ..., ...}}"));
-        None
+        serde_json::from_str(raw.get())
+            .map_err(|error| {
+                let before = self.problems.len();
+                self.look_into(name, raw, fields);
+                if self.problems.len() == before {
+                    let at = self.offset(raw);
+                    self.problems.push(problem(self.text, at, name, raw.get(), &error));
+                }
+            })
+            .ok()
     }
 
-    fn network(&mut self, file: &FileText<'a>) -> Option<Network> {
+    /// Says what is wrong with the fields of an object that could not be read, each in its place.
+    fn look_into(&mut self, name: &str, raw: &'a RawValue, fields: &[(&'static str, Content)]) {
+        let Ok(Fields(found)) = serde_json::from_str::<Fields<'a>>(raw.get()) else { return };
+        for (index, (field, value)) in found.iter().enumerate() {
+            let Some((known, content)) = fields.iter().find(|(known, _)| known == field) else {
+                let names: Vec<String> = fields.iter().map(|(known, _)| (*known).to_string()).collect();
+                let near = match nearest(field, names.iter()) {
+                    Some(near) => format!("did you mean `{near}`?"),
+                    None => format!("the fields are `{}`", names.join("`, `")),
+                };
+                self.problem(value, format!("{name}: there is no field `{field}`; {near}"));
+                continue;
+            };
+            if found[..index].iter().any(|(other, _)| other == field) {
+                self.problem(value, format!("{name}: the field `{field}` is there twice"));
+            } else if let Err(why) = content.check(value.get()) {
+                self.problem(value, format!("{name}: `{known}` must be {}, not {why}", content.describe()));
+            }
+        }
+        for (known, content) in fields {
+            let required = !matches!(content, Content::Bound | Content::Delay);
+            if required && !found.iter().any(|(field, _)| field == known) {
+                self.problem(raw, format!("{name}: the field `{known}` is missing"));
+            }
+        }
+    }
+
+    fn network(&mut self, file: &FileText<'a>) -> Option<(Network, Places)> {
         if let Some(raw) = file.format
             && let Some(format) = self.element::<String>("format", raw)
             && format != FORMAT
@@ -276,7 +327,9 @@ impl<'a> Reader<'a> {
         let mut requirements = Vec::new();
         for (at, &raw) in requirement_list.iter().enumerate() {
             let element = format!("requirements[{at}]");
-            let Some(requirement) = self.object::<RequirementText>(&element, raw) else { continue };
+            let Some(requirement) = self.object::<RequirementText>(&element, raw, &REQUIREMENT) else {
+                continue;
+            };
             let from = find(self, raw, &element, &requirement.from);
             let to = find(self, raw, &element, &requirement.to);
             let bound = |seconds: Option<Seconds>| seconds.map_or(Bound::Infinite, |s| Bound::Finite(s.0));
@@ -288,7 +341,7 @@ impl<'a> Reader<'a> {
         let mut contingents = Vec::new();
         for (at, &raw) in contingent_list.iter().enumerate() {
             let element = format!("contingents[{at}]");
-            let Some(link) = self.object::<ContingentText>(&element, raw) else { continue };
+            let Some(link) = self.object::<ContingentText>(&element, raw, &CONTINGENT) else { continue };
             let from = find(self, raw, &element, &link.from);
             let to = find(self, raw, &element, &link.to);
             let delay = link.delay.map_or(Delay::NONE, |(min, max)| Delay {
@@ -304,7 +357,15 @@ impl<'a> Reader<'a> {
             return None;
         }
         match Network::new(name, origin?, events, requirements, contingents) {
-            Ok(network) => Some(network),
+            Ok(network) => {
+                let range = |raw: &RawValue| {
+                    let start = self.offset(raw);
+                    start..start + raw.get().len()
+                };
+                let requirements = requirement_list.iter().map(|raw| [range(raw), range(raw)]).collect();
+                let contingents = contingent_list.iter().map(|raw| range(raw)).collect();
+                Some((network, Places { requirements, contingents }))
+            }
             Err(errors) => {
                 for error in errors {
                     let raw = match &error {
@@ -360,37 +421,9 @@ fn problem(text: &str, start: usize, element: &str, part: &str, error: &serde_js
     if let Some(at) = message.rfind(" at line ") {
         message.truncate(at);
     }
+    let message = plainly(&message);
     let message = if element.is_empty() { message } else { format!("{element}: {message}") };
     ReadProblem { offset, message }
-}
-
-/// The known name most like a wrong one, if one is like it at all: another case, or one or two letters off.
-fn nearest<'a>(wrong: &str, known: impl Iterator<Item = &'a String>) -> Option<&'a String> {
-    let wrong = wrong.to_lowercase();
-    let most = if wrong.chars().count() < 4 { 1 } else { 2 };
-    known
-        .map(|name| (distance(&wrong, &name.to_lowercase(), most), name))
-        .filter(|(distance, _)| *distance <= most)
-        .min_by_key(|(distance, _)| *distance)
-        .map(|(_, name)| name)
-}
-
-/// Levenshtein distance, or more than `most`.
-fn distance(a: &str, b: &str, most: usize) -> usize {
-    let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
-    if a.len().abs_diff(b.len()) > most {
-        return most + 1;
-    }
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.iter().enumerate() {
-        let mut diagonal = std::mem::replace(&mut row[0], i + 1);
-        for (j, y) in b.iter().enumerate() {
-            let replaced = diagonal + usize::from(x != y);
-            diagonal = row[j + 1];
-            row[j + 1] = replaced.min(diagonal + 1).min(row[j] + 1);
-        }
-    }
-    row[b.len()]
 }
 
 struct Document<'a>(&'a Network);

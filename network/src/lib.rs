@@ -31,6 +31,7 @@
 //! | blame | [`mod@check`] | negative cycle | minimal [`Conflict`] in terms of the network |
 //! | compile | [`mod@dispatchable`] | plain STNU | [`Dispatchable`] |
 //!
+//! [`mod@punctual`] finds the events of a controllable network that can never be executed late.
 //! [`json`], [`graphml`], [`plain`], [`dot`] and [`text`] are the formats, [`generate`] makes networks to measure with.
 //!
 //! # Words
@@ -62,7 +63,9 @@ pub mod graphml;
 pub mod json;
 pub mod merge;
 pub mod model;
+pub mod places;
 pub mod plain;
+pub mod punctual;
 mod radix;
 pub mod reduce;
 pub mod rmpl;
@@ -75,4 +78,5 @@ pub use check::{Verdict, check};
 pub use conflict::{Conflict, Part, Share};
 pub use dispatchable::{Dispatchable, dispatchable};
 pub use model::{ContingentLink, Delay, Event, EventId, ModelError, Name, Network, Requirement};
+pub use places::Places;
 pub use time::{Bound, Duration, ParseDurationError, Time};

@@ -11,15 +11,24 @@
 //! ```
 
 use std::collections::{BTreeMap, VecDeque};
+use std::ops::Range;
 
 use crate::json::ReadProblem;
-use crate::model::{ContingentLink, Delay, Event, EventId, ModelError, Name, Network, Requirement};
+use crate::model::{
+    ContingentLink, Delay, Event, EventId, ModelError, Name, Network, Requirement, normal_name,
+};
+use crate::places::Places;
 use crate::time::{Bound, Duration};
 
 /// Reads a plain text STNU, or lists everything that is wrong with it. The network has no name and no delays.
 ///
 /// Edges in opposite directions between two events become one requirement, where the first of the two stands.
 pub fn read(text: &str) -> Result<Network, Vec<ReadProblem>> {
+    read_with_places(text).map(|(network, _)| network)
+}
+
+/// Reads a plain text STNU as [`read`] does, and remembers where its constraints stand.
+pub fn read_with_places(text: &str) -> Result<(Network, Places), Vec<ReadProblem>> {
     let mut reader = Reader::default();
     let body = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut offset = text.len() - body.len();
@@ -40,13 +49,15 @@ pub fn read(text: &str) -> Result<Network, Vec<ReadProblem>> {
 #[derive(Default)]
 pub(crate) struct Intervals {
     pub(crate) requirements: Vec<Requirement>,
+    /// For each requirement where its upper and its lower bound are said.
+    pub(crate) places: Vec<[Range<usize>; 2]>,
     /// The requirements without a lower bound, by their events.
     open: BTreeMap<(EventId, EventId), VecDeque<usize>>,
 }
 
 impl Intervals {
-    /// Adds `to - from <= weight`.
-    pub(crate) fn add(&mut self, from: EventId, to: EventId, weight: Duration) {
+    /// Adds `to - from <= weight`, said at `place`.
+    pub(crate) fn add(&mut self, from: EventId, to: EventId, weight: Duration, place: Range<usize>) {
         let lower = Duration::from_micros(-weight.as_micros());
         if let Some(open) = self.open.get_mut(&(to, from))
             && let Some(&first) = open.front()
@@ -54,9 +65,11 @@ impl Intervals {
         {
             open.pop_front();
             self.requirements[first].lower = Bound::Finite(lower);
+            self.places[first][1] = place;
             return;
         }
         self.open.entry((from, to)).or_default().push_back(self.requirements.len());
+        self.places.push([place.clone(), place]);
         self.requirements.push(Requirement {
             from,
             to,
@@ -91,6 +104,14 @@ struct Line<'a> {
     offset: usize,
     words: Vec<Word<'a>>,
     text: &'a str,
+}
+
+impl Line<'_> {
+    /// From the first word to the last.
+    fn range(&self) -> Range<usize> {
+        let end = |word: &Word<'_>| word.offset + word.text.len();
+        self.words.first().map_or(self.offset, |word| word.offset)..self.words.last().map_or(self.offset, end)
+    }
 }
 
 fn words(line: &str, offset: usize) -> Vec<Word<'_>> {
@@ -174,16 +195,23 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn network(&mut self, end: usize) -> Option<Network> {
+    fn network(&mut self, end: usize) -> Option<(Network, Places)> {
         if !self.has_points {
             self.problem(end, "there is no section `# Time-Point Names`".to_string());
             return None;
         }
         let mut index: BTreeMap<&'a str, EventId> = BTreeMap::new();
+        let mut names: BTreeMap<String, &'a str> = BTreeMap::new();
         let mut events = Vec::new();
         for (number, word) in std::mem::take(&mut self.points) {
             if index.insert(word.text, EventId(events.len() as u32)).is_some() {
                 let message = format!("line {number}: the time-point `{}` is listed twice", word.text);
+                self.problem(word.offset, message);
+            } else if let Some(other) = names.insert(normal_name(word.text), word.text) {
+                let message = format!(
+                    "line {number}: the time-points `{}` and `{other}` have the same name (case does not count)",
+                    word.text
+                );
                 self.problem(word.offset, message);
             }
             events.push(Event { names: vec![Name { text: word.text.to_string(), internal: false }] });
@@ -199,7 +227,7 @@ impl<'a> Reader<'a> {
             let ends = (self.point(&index, line, from), self.point(&index, line, to));
             let weight = self.seconds(line, weight, "the weight");
             if let ((Some(from), Some(to)), Some(weight)) = (ends, weight) {
-                intervals.add(from, to, weight);
+                intervals.add(from, to, weight, line.range());
             }
         }
         let mut contingents = Vec::new();
@@ -224,7 +252,10 @@ impl<'a> Reader<'a> {
             return None;
         }
         match Network::new(String::new(), origin?, events, intervals.requirements, contingents) {
-            Ok(network) => Some(network),
+            Ok(network) => {
+                let contingents = links.iter().map(Line::range).collect();
+                Some((network, Places { requirements: intervals.places, contingents }))
+            }
             Err(errors) => {
                 for error in errors {
                     let (link, message) = about_link(&error);

@@ -276,7 +276,7 @@ fn broken_edges_get_a_message_each() {
     12:1 node `A`: there is another node with this id
     12:15 a node has no `id`
     12:51 node `O` has the observation `p`: conditional networks (CSTN, CSTNU) are not read
-    13:1 node `N`: the name `Z` is used already
+    13:1 node `N`: the name `Z` is used already (case does not count)
     13:82 node `M`: `Names` must be a JSON list of names, like ["a", "b"]
     "#);
 }

@@ -377,13 +377,15 @@ impl Dispatcher {
     /// heard of cannot have happened so long ago that its news would have come by `end`.
     pub fn happened_by(&self, end: Time) -> Vec<Option<(i64, i64)>> {
         let network = self.network();
-        let mut all = self.knowledge.all_happened(network);
+        // Silence about one event says something of the others in its chain, too.
+        let mut knowledge = self.knowledge.clone();
         for link in network.contingents().iter().filter(|link| self.known(link.to).observed.is_none()) {
-            if let (Some((low, high)), Some(max)) = (&mut all[link.to.index()], link.delay.max.finite()) {
-                *low = (*low).max(end.as_micros().saturating_sub(max.as_micros())).min(*high);
+            if let Some(max) = link.delay.max.finite() {
+                let earliest = end.as_micros().saturating_sub(max.as_micros());
+                knowledge.add_evidence(link.to, (earliest, i64::MAX));
             }
         }
-        all
+        knowledge.all_happened(network)
     }
 
     /// True if the news of an event narrowed what was assumed of it or of its ancestors.

@@ -29,6 +29,8 @@ pub fn verify(network: &Network, execution: &Execution) -> Vec<Violation> {
         makespan: execution.makespan.0.as_micros(),
         facts: vec![None; network.events().len()],
         nature: vec![Vec::new(); network.events().len()],
+        latest: Vec::new(),
+        known: Vec::new(),
         violations: Vec::new(),
     };
     verifier.read(execution);
@@ -36,6 +38,7 @@ pub fn verify(network: &Network, execution: &Execution) -> Vec<Violation> {
         verifier.build_nature();
     }
     if verifier.violations.is_empty() {
+        verifier.check_claims(execution);
         verifier.check_requirements();
     }
     verifier.violations
@@ -48,6 +51,10 @@ struct Verifier<'a> {
     facts: Vec<Option<Fact>>,
     /// What Nature must respect: from each event, edges (to, most that `to` comes after it).
     nature: Vec<Vec<(EventId, i64)>>,
+    /// When each event had happened at the latest, whether heard of or not.
+    latest: Vec<Option<i64>>,
+    /// Where each event must have been by what was heard.
+    known: Vec<Option<(i64, i64)>>,
     violations: Vec<Violation>,
 }
 
@@ -57,6 +64,7 @@ struct Fact {
     how: How,
     observed: Option<i64>,
     truth: Option<i64>,
+    happened: Option<(i64, i64)>,
 }
 
 impl Verifier<'_> {
@@ -105,6 +113,7 @@ impl Verifier<'_> {
             how: row.how,
             observed: row.observed.flatten().map(|time| time.0.as_micros()),
             truth: row.truth.map(|time| time.0.as_micros()),
+            happened: row.happened.map(|(low, high)| (low.0.as_micros(), high.0.as_micros())),
         };
         if self.facts[event.index()].is_some_and(|other| other != fact) {
             let label = self.network.label(event);
@@ -117,7 +126,13 @@ impl Verifier<'_> {
         let name = &row.event;
         if self.network.link_of(event).is_none() {
             match fact {
-                Fact { time: Some(time), how: How::Dispatched, observed: None, truth } => {
+                Fact { time: Some(time), how: How::Dispatched, observed: None, truth, happened } => {
+                    if happened.is_some_and(|claim| claim != (time, time)) {
+                        self.say(
+                            Some(name),
+                            format!("`{name}` is dispatched, but said to have happened at another time"),
+                        );
+                    }
                     if truth.is_some_and(|truth| truth != time) {
                         self.say(Some(name), format!("`{name}` is dispatched, but true at another time"));
                     }
@@ -160,28 +175,41 @@ impl Verifier<'_> {
                 nature[event.index()].push((origin, -low));
             }
         };
+        // The same without any news.
+        let mut unheard = vec![Vec::new(); self.nature.len()];
         for event in self.network.event_ids() {
             let Some(fact) = self.facts[event.index()] else { continue };
             match self.network.link_of(event) {
                 None => {
                     let time = fact.time.unwrap_or_default();
                     fix(&mut self.nature, event, time, time);
+                    fix(&mut unheard, event, time, time);
                 }
                 Some(link) => {
                     let link = self.network.contingents()[link];
                     let (min, max) = (link.delay.min.as_micros(), link.delay.max);
                     self.nature[link.from.index()].push((event, link.upper.as_micros()));
                     self.nature[event.index()].push((link.from, -link.lower.as_micros()));
+                    unheard[link.from.index()].push((event, link.upper.as_micros()));
                     let max = if let Bound::Finite(max) = max { Some(max.as_micros()) } else { None };
                     // News that has not come by the end will come later, or never.
                     let heard = fact.observed.unwrap_or(self.makespan);
                     let low = max.map_or(i64::MIN, |max| heard.saturating_sub(max));
                     let high = fact.observed.map_or(i64::MAX, |observed| observed - min);
                     fix(&mut self.nature, event, low, high);
-                    if let Some(truth) = fact.truth {
-                        fix(&mut self.nature, event, truth, truth);
-                    }
                 }
+            }
+        }
+        // What is known is known without the truth, which nobody in the execution was told.
+        let latest = self.longest(origin).unwrap_or_default();
+        let earliest = self.longest_to(origin).unwrap_or_default();
+        self.latest = longest(&unheard, origin).unwrap_or_default();
+        self.known = latest.into_iter().zip(earliest).map(|(high, low)| Some((-low?, high?))).collect();
+        for event in self.network.event_ids() {
+            if self.network.link_of(event).is_some()
+                && let Some(truth) = self.facts[event.index()].and_then(|fact| fact.truth)
+            {
+                fix(&mut self.nature, event, truth, truth);
             }
         }
         let Some(from_origin) = self.longest(origin) else {
@@ -220,32 +248,64 @@ impl Verifier<'_> {
         }
     }
 
+    /// What the record claims to follow from itself: where each event must have happened, and when all was over.
+    fn check_claims(&mut self, execution: &Execution) {
+        let seconds = kirk_network::Duration::from_micros;
+        // The last event was over when it was executed, or at the latest when it had happened in any case.
+        let (mut over, mut last) = (0, None);
+        let mut at_most = 0;
+        let all_recorded = self.network.event_ids().all(|event| self.facts[event.index()].is_some());
+        for row in &execution.rows {
+            let Some(event) = self.network.find(&row.event) else { continue };
+            let known = self.known.get(event.index()).copied().flatten();
+            let Some(fact) = self.facts[event.index()] else { continue };
+            let contingent = self.network.link_of(event).is_some();
+            if let (Some(claim), Some(known), true) = (fact.happened, known, contingent)
+                && claim != known
+            {
+                let message = format!(
+                    "`{}` is said to have happened in [{}, {}], but what was heard says [{}, {}]",
+                    row.event,
+                    seconds(claim.0),
+                    seconds(claim.1),
+                    seconds(known.0),
+                    seconds(known.1)
+                );
+                self.say(Some(&row.event), message);
+            }
+            let end = fact.time.or(known.map(|(_, high)| high)).unwrap_or_default();
+            if end > over {
+                (over, last) = (end, Some(row.event.as_str()));
+            }
+            let latest = self.latest.get(event.index()).copied().flatten().unwrap_or(i64::MAX);
+            at_most = at_most.max(end).max(fact.observed.unwrap_or_default()).max(latest);
+        }
+        // Events without a row may come after all the others.
+        if self.makespan < over || all_recorded && self.makespan > at_most {
+            let message = format!(
+                "the makespan is said to be {} s, but the last event, `{}`, came at {} s",
+                seconds(self.makespan),
+                last.unwrap_or_else(|| self.network.label(self.network.origin())),
+                seconds(over)
+            );
+            self.say(last, message);
+        }
+    }
+
     /// For every event the most it can come after `from` in any course of Nature; `None` if there is no such course.
     fn longest(&self, from: EventId) -> Option<Vec<Option<i64>>> {
-        let count = self.nature.len();
-        let mut most: Vec<Option<i64>> = vec![None; count];
-        let mut length = vec![0_usize; count];
-        most[from.index()] = Some(0);
-        let mut open = VecDeque::from([from]);
-        let mut queued = vec![false; count];
-        while let Some(event) = open.pop_front() {
-            queued[event.index()] = false;
-            let Some(here) = most[event.index()] else { continue };
-            for &(to, weight) in &self.nature[event.index()] {
-                let candidate = here.saturating_add(weight);
-                if most[to.index()].is_none_or(|known| candidate < known) {
-                    most[to.index()] = Some(candidate);
-                    length[to.index()] = length[event.index()] + 1;
-                    if length[to.index()] > count {
-                        return None;
-                    }
-                    if !std::mem::replace(&mut queued[to.index()], true) {
-                        open.push_back(to);
-                    }
-                }
+        longest(&self.nature, from)
+    }
+
+    /// For every event the most that `to` can come after it.
+    fn longest_to(&self, to: EventId) -> Option<Vec<Option<i64>>> {
+        let mut reversed: Vec<Vec<(EventId, i64)>> = vec![Vec::new(); self.nature.len()];
+        for (from, edges) in self.nature.iter().enumerate() {
+            for &(to, weight) in edges {
+                reversed[to.index()].push((EventId(from as u32), weight));
             }
         }
-        Some(most)
+        longest(&reversed, to)
     }
 
     fn check_requirements(&mut self) {
@@ -338,4 +398,32 @@ impl Verifier<'_> {
             "there are no times for the events without a row that keep all requirements".to_string(),
         );
     }
+}
+
+/// Bellman-Ford: for every event the length of the shortest path from `from`; `None` if there is a negative cycle.
+fn longest(edges: &[Vec<(EventId, i64)>], from: EventId) -> Option<Vec<Option<i64>>> {
+    let count = edges.len();
+    let mut most: Vec<Option<i64>> = vec![None; count];
+    let mut length = vec![0_usize; count];
+    most[from.index()] = Some(0);
+    let mut open = VecDeque::from([from]);
+    let mut queued = vec![false; count];
+    while let Some(event) = open.pop_front() {
+        queued[event.index()] = false;
+        let Some(here) = most[event.index()] else { continue };
+        for &(to, weight) in &edges[event.index()] {
+            let candidate = here.saturating_add(weight);
+            if most[to.index()].is_none_or(|known| candidate < known) {
+                most[to.index()] = Some(candidate);
+                length[to.index()] = length[event.index()] + 1;
+                if length[to.index()] > count {
+                    return None;
+                }
+                if !std::mem::replace(&mut queued[to.index()], true) {
+                    open.push_back(to);
+                }
+            }
+        }
+    }
+    Some(most)
 }

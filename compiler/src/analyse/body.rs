@@ -7,6 +7,7 @@ use crate::diagnostic::Diagnostic;
 use crate::evaluate;
 use crate::form::clip;
 use crate::nearest::nearest;
+use crate::parse::instead_of_operator;
 use crate::typed::{Between, Body, EventOf, Expression, ExpressionKind};
 
 impl Analyser<'_> {
@@ -145,9 +146,12 @@ impl Analyser<'_> {
     #[inline(never)]
     fn call(&mut self, call: &ast::Call) -> Option<Body> {
         let home = &self.definition.home;
-        let arguments: Vec<Expression> = call.arguments.iter().map(|value| self.argument(value)).collect();
         let Some(program) = self.names.program(&call.program, home) else {
             let span = call.program.span;
+            // What follows a word of another language is not its arguments.
+            if instead_of_operator(&call.program.name).is_none() {
+                call.arguments.iter().for_each(|value| drop(self.argument(value)));
+            }
             if self.problems.has_lost(&call.program.name) {
                 return None;
             }
@@ -174,6 +178,7 @@ impl Analyser<'_> {
                 .help(format!("Call it as `{}`.", shape(target))),
             );
         }
+        let arguments = call.arguments.iter().map(|value| self.argument(value)).collect();
         Some(Body::Call { program, arguments, span: call.span })
     }
 

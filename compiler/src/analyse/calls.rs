@@ -1,5 +1,7 @@
 //! Who calls whom: no program may call itself, and one that nobody calls is probably a slip.
 
+use crate::Options;
+use crate::ast;
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::form::clip;
@@ -43,8 +45,16 @@ pub(super) fn check_recursion(model: &Model, problems: &mut Problems) {
 }
 
 /// Warns of programs that are never called. If the program to start from was chosen, the others that nobody calls
-/// and that are not primitive may be chosen another time: they and what they call are in use.
-pub(super) fn check_use(model: &Model, entry: usize, is_main: bool, problems: &mut Problems) {
+/// and that are not primitive may be chosen another time: they and what they call are in use. So are those of
+/// the same name in other packages.
+pub(super) fn check_use(
+    model: &Model,
+    program: &ast::Program,
+    entry: usize,
+    options: &Options,
+    problems: &mut Problems,
+) {
+    let is_main = options.entry.eq_ignore_ascii_case("main");
     if problems.has_errors() {
         return;
     }
@@ -55,7 +65,8 @@ pub(super) fn check_use(model: &Model, entry: usize, is_main: bool, problems: &m
         called[*target] = true;
     }
     let mut used = vec![false; calls.len()];
-    let mut open = vec![entry];
+    let name_of = |index: usize| model.programs[index].name.name.as_str();
+    let mut open: Vec<usize> = (0..calls.len()).filter(|index| name_of(*index) == name_of(entry)).collect();
     if !is_main {
         open.extend(
             (0..calls.len())
@@ -70,19 +81,24 @@ pub(super) fn check_use(model: &Model, entry: usize, is_main: bool, problems: &m
     let entry_name = clip(&model.programs[entry].name.name);
     // Other sources are libraries: nobody uses all of one.
     let source = model.programs[entry].name.span.source;
-    let here = model.programs.iter().zip(&used).filter(|(program, _)| program.name.span.source == source);
-    for (program, _) in here.filter(|(_, used)| !**used) {
+    let here = model.programs.iter().zip(&used);
+    let homes = program.programs.iter().map(|program| program.home.as_str());
+    for ((unused, _), home) in
+        here.zip(homes).filter(|((program, used), _)| !**used && program.name.span.source == source)
+    {
+        let name = clip(&unused.name.name);
+        let choice = match home == program.programs[entry].home {
+            true => format!("--entry {name}"),
+            false => format!("-P {} --entry {name}", clip(home)),
+        };
         problems.push(
             Diagnostic::warning(
                 Code::NeverUsed,
-                program.name.span,
-                format!("the program `{}` is never used", clip(&program.name.name)),
+                unused.name.span,
+                format!("the program `{name}` is never used"),
             )
             .primary("defined here")
-            .help(format!(
-                "Nothing that `{entry_name}` does leads to it. To start from it, use `--entry {}`.",
-                clip(&program.name.name)
-            )),
+            .help(format!("Nothing that `{entry_name}` does leads to it. To start from it, use `{choice}`.")),
         );
     }
 }

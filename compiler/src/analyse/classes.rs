@@ -65,6 +65,7 @@ impl<'a> Classes<'a> {
                 check_slot(class, slot, program, names, problems);
             }
         }
+        circles(program, names, problems);
         Classes { classes: &program.classes }
     }
 
@@ -161,6 +162,52 @@ impl<'a> Classes<'a> {
             if parameter && !definition.parameters.iter().any(|parameter| parameter.name == *name) {
                 problems.push(unknown(value.span, name, definition));
             }
+        }
+    }
+}
+
+/// Reports every class that extends itself, directly or through others: each circle once.
+fn circles(program: &Program, names: &Names, problems: &mut Problems) {
+    #[derive(Clone, Copy, PartialEq)]
+    enum State {
+        New,
+        OnTheWalk,
+        Done,
+    }
+    let mut state = vec![State::New; program.classes.len()];
+    for start in 0..program.classes.len() {
+        let mut walk: Vec<(usize, usize)> = Vec::new();
+        if state[start] == State::New {
+            state[start] = State::OnTheWalk;
+            walk.push((start, 0));
+        }
+        while let Some((class, next)) = walk.last_mut() {
+            let here = &program.classes[*class];
+            let Some(parent) = here.supers.get(*next) else {
+                state[*class] = State::Done;
+                walk.pop();
+                continue;
+            };
+            *next += 1;
+            let Some(target) = names.class(parent, &here.home) else { continue };
+            if state[target] == State::New {
+                state[target] = State::OnTheWalk;
+                walk.push((target, 0));
+            }
+            if state[target] == State::Done || walk.last().is_some_and(|(_, next)| *next == 0) {
+                continue;
+            }
+            let from = walk.iter().position(|(class, _)| *class == target).unwrap_or(0);
+            let circle = walk[from..].iter().map(|(class, _)| &program.classes[*class].name);
+            let mut path: Vec<String> = circle.clone().take(8).map(|name| clip(&name.name)).collect();
+            path.push(clip(&program.classes[target].name.name));
+            let message = format!("the class `{}` extends itself", path[0]);
+            let problem = Diagnostic::error(Code::CircularClass, parent.span, message)
+                .primary("this closes the circle")
+                .help(format!("{}: take one of the superclasses out.", path.join(" -> ")));
+            problems.push(
+                circle.take(8).fold(problem, |problem, name| problem.label(name.span, "on the circle")),
+            );
         }
     }
 }

@@ -151,8 +151,11 @@ impl Resolver<'_> {
         }
         let variables = self.scope.iter().map(String::as_str);
         let numbers = self.program.parameters.iter().map(|p| p.name.name.as_str());
-        let help =
-            nearest(&ident.name, variables.chain(numbers)).map(|near| format!("Did you mean `{near}`?"));
+        let near = match ident.name.as_str() {
+            "infinity" | "inf" | "infinite" | "unbounded" | "∞" => Some(":infinity"),
+            _ => nearest(&ident.name, variables.chain(numbers)),
+        };
+        let help = near.map(|near| format!("Did you mean `{near}`?"));
         self.problems.push(
             Diagnostic::error(Code::UnknownName, ident.span, format!("nothing is called `{}`", clip(&ident.name)))
                 .primary("neither a parameter or variable here nor a named number")

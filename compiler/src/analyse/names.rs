@@ -1,13 +1,13 @@
 //! Which definition a name means, across packages.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use crate::ast::{Ident, Program};
+use crate::ast::{Ident, Package, Program};
 use crate::code::Code;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Severity};
 use crate::form::clip;
 use crate::nearest::nearest;
-use crate::parse::{DEFAULT_PACKAGE, OPERATORS};
+use crate::parse::{DEFAULT_PACKAGE, OPERATORS, instead_of_operator};
 use crate::problem::Problems;
 use crate::source::Span;
 
@@ -16,12 +16,18 @@ type Table = BTreeMap<(String, String), usize>;
 /// All names of a program.
 pub(crate) struct Names {
     packages: Vec<String>,
+    /// The package each nickname means.
+    nicknames: BTreeMap<String, String>,
+    /// The package a nickname means inside of another package.
+    local_nicknames: BTreeMap<(String, String), String>,
     /// What each package sees besides its own names, in order.
     uses: BTreeMap<String, Vec<String>>,
     imports: BTreeMap<(String, String), String>,
     programs: Table,
     numbers: Table,
     classes: Table,
+    /// The slots of classes and their accessors.
+    slots: BTreeSet<(String, String)>,
 }
 
 impl Names {
@@ -29,11 +35,14 @@ impl Names {
     pub(super) fn new(program: &Program, problems: &mut Problems) -> Names {
         let mut names = Names {
             packages: Vec::new(),
+            nicknames: BTreeMap::new(),
+            local_nicknames: BTreeMap::new(),
             uses: BTreeMap::new(),
             imports: BTreeMap::new(),
             programs: Table::new(),
             numbers: Table::new(),
             classes: Table::new(),
+            slots: BTreeSet::new(),
         };
         let mut firsts: BTreeMap<&str, Span> = BTreeMap::new();
         for package in &program.packages {
@@ -47,17 +56,15 @@ impl Names {
             }
         }
         for package in &program.packages {
-            let home = &package.name.name;
-            for used in &package.uses {
-                if names.check_package(&used.name, used.span, problems) {
-                    names.uses.entry(home.clone()).or_default().push(used.name.clone());
-                }
-            }
-            for import in &package.imports {
-                if let Some(from) = &import.package
-                    && names.check_package(from, import.span, problems)
-                {
-                    names.imports.insert((home.clone(), import.name.clone()), from.clone());
+            for nickname in &package.nicknames {
+                match firsts.get(nickname.name.as_str()) {
+                    Some(first) if nickname.name != package.name.name => {
+                        problems.push(defined_twice("package", nickname, *first));
+                    }
+                    _ => {
+                        firsts.insert(&nickname.name, nickname.span);
+                        names.nicknames.insert(nickname.name.clone(), package.name.name.clone());
+                    }
                 }
             }
         }
@@ -66,7 +73,73 @@ impl Names {
         let numbers = program.parameters.iter().map(|p| (&p.home, &p.name));
         fill(&mut names.numbers, numbers, "named number", problems);
         fill(&mut names.classes, program.classes.iter().map(|c| (&c.home, &c.name)), "class", problems);
+        for class in &program.classes {
+            let named = class.slots.iter().flat_map(|slot| slot.accessors.iter().chain([&slot.name]));
+            names.slots.extend(named.map(|name| (class.home.clone(), name.name.clone())));
+        }
+        for package in &program.packages {
+            names.open(package, problems);
+        }
         names
+    }
+
+    /// Takes in what a package sees of others.
+    fn open(&mut self, package: &Package, problems: &mut Problems) {
+        let home = &package.name.name;
+        for (short, of) in &package.local_nicknames {
+            if let Some(of) = self.check_package(home, &of.name, of.span, problems) {
+                self.local_nicknames.insert((home.clone(), short.name.clone()), of);
+            }
+        }
+        for used in &package.uses {
+            if let Some(used) = self.check_package(home, &used.name, used.span, problems) {
+                self.uses.entry(home.clone()).or_default().push(used);
+            }
+        }
+        for import in &package.imports {
+            let Some(from) = &import.package else { continue };
+            let Some(from) = self.check_package(home, from, import.span, problems) else { continue };
+            let wanted = problems.wants(import.span.source) && !problems.has_lost(&import.name);
+            if wanted && !self.has(&from, &import.name) {
+                problems.push(self.not_there(&from, import, "imported"));
+                // Where it is called, it is not missed again.
+                problems.lose_text(&import.name);
+            }
+            self.imports.insert((home.clone(), import.name.clone()), from);
+        }
+        for export in &package.exports {
+            let wanted = problems.wants(export.span.source) && !problems.has_lost(&export.name);
+            if wanted && !self.has(home, &export.name) {
+                let problem = self.not_there(home, export, "exported");
+                problems.push(Diagnostic { severity: Severity::Warning, ..problem });
+            }
+        }
+    }
+
+    /// True if the package has something of this name, or sees it.
+    fn has(&self, package: &str, name: &str) -> bool {
+        let ident = Ident { package: None, name: name.to_string(), span: Span::default() };
+        let tables = [&self.programs, &self.numbers, &self.classes];
+        tables.into_iter().any(|table| self.find(table, &ident, package).is_some())
+            || self.slots.contains(&(package.to_string(), name.to_string()))
+    }
+
+    fn not_there(&self, package: &str, name: &Ident, how: &str) -> Diagnostic {
+        let tables = [&self.programs, &self.numbers, &self.classes];
+        let known = tables.into_iter().flat_map(|table| table.keys());
+        let known = known.filter(|(home, _)| home == package).map(|(_, name)| name.as_str());
+        let near = nearest(&name.name, known).map(|near| format!("Did you mean `{near}`?"));
+        let message = format!("the package `{}` has no `{}`", clip(package), clip(&name.name));
+        Diagnostic::error(Code::UnknownName, name.span, message)
+            .primary(format!("{how} here"))
+            .help("A package has the programs, classes and named numbers that are defined after its `in-package`.")
+            .maybe_help(near)
+    }
+
+    /// The package that a name of a package means in the package `home`.
+    pub(super) fn package<'a>(&'a self, home: &str, name: &'a str) -> &'a str {
+        let local = self.local_nicknames.get(&(home.to_string(), name.to_string()));
+        local.or_else(|| self.nicknames.get(name)).map_or(name, String::as_str)
     }
 
     /// The packages defined, in source order.
@@ -90,7 +163,7 @@ impl Names {
     pub(super) fn unknown_program(&self, ident: &Ident, home: &str) -> Diagnostic {
         let name = clip(&ident.name);
         if let Some(package) = &ident.package
-            && !self.packages.contains(package)
+            && !self.packages.iter().any(|known| known == self.package(home, package))
         {
             let near = nearest(package, self.packages()).map(|near| format!("Did you mean `{near}:{name}`?"));
             return Diagnostic::error(
@@ -101,7 +174,12 @@ impl Names {
             .primary("not a package of this source")
             .maybe_help(near);
         }
-        let from = ident.package.as_deref().unwrap_or(home);
+        if let Some(instead) = instead_of_operator(&ident.name).filter(|_| ident.package.is_none()) {
+            return Diagnostic::error(Code::UnknownOperator, ident.span, format!("RMPL has no `{name}`"))
+                .primary("neither an operator nor a program")
+                .help(instead);
+        }
+        let from = ident.package.as_deref().map_or(home, |package| self.package(home, package));
         let visible = self.programs.keys().filter(|(package, _)| package == from || self.sees(from, package));
         let near = nearest(&ident.name, visible.map(|(_, name)| name.as_str()).chain(OPERATORS));
         if let Some(near) = near.filter(|near| OPERATORS.contains(near)) {
@@ -129,7 +207,7 @@ impl Names {
     fn find(&self, table: &Table, ident: &Ident, home: &str) -> Option<usize> {
         let get = |package: &str| table.get(&(package.to_string(), ident.name.clone())).copied();
         if let Some(package) = &ident.package {
-            return get(package);
+            return get(self.package(home, package));
         }
         let imported = self.imports.get(&(home.to_string(), ident.name.clone()));
         let used = self.uses.get(home).into_iter().flatten();
@@ -140,12 +218,13 @@ impl Names {
         self.uses.get(home).is_some_and(|uses| uses.iter().any(|used| used == package))
     }
 
-    /// True if the package is one of the source; reports those that are neither that nor part of Lisp and RMPL.
-    fn check_package(&self, name: &str, span: Span, problems: &mut Problems) -> bool {
+    /// The package meant, if it is one of the source; reports those that are neither that nor part of Lisp and RMPL.
+    fn check_package(&self, home: &str, name: &str, span: Span, problems: &mut Problems) -> Option<String> {
+        let name = self.package(home, name);
         let builtin =
             matches!(name, "cl" | "common-lisp" | "rmpl" | DEFAULT_PACKAGE) || name.starts_with("rmpl/");
         if self.packages.iter().any(|known| known == name) {
-            return true;
+            return Some(name.to_string());
         }
         if !builtin {
             let near = nearest(name, self.packages()).map(|near| format!("Did you mean `{near}`?"));
@@ -159,7 +238,7 @@ impl Names {
                 .maybe_help(near),
             );
         }
-        false
+        None
     }
 }
 

@@ -151,3 +151,18 @@ useful when the delay varies by less than the duration, however long it is.",
                       :max-observation-delay 10)
       :contingent t)))",
 };
+
+pub(super) const NEVER_LATE: Page = Page {
+    meaning: "An activity has to start at one certain moment, and nobody wrote that down: a lower bound and an upper bound meet,
+so that the first moment at which it can start is also the last. Such a plan is right, and it breaks with the
+smallest latency of a computer, a radio or a person. Kirk names the bounds; leave some time between them. An
+exact time that is written as such (`:lower-bound 5 :upper-bound 5`) earns no note.",
+    wrong: "(define-control-program a () (declare (primitive) (duration (simple :lower-bound 15 :upper-bound 20))))
+(define-control-program main ()
+  (with-temporal-constraint (simple-temporal :upper-bound 30)
+    (sequence (:slack t) (a) (a))))",
+    right: "(define-control-program a () (declare (primitive) (duration (simple :lower-bound 15 :upper-bound 20))))
+(define-control-program main ()
+  (with-temporal-constraint (simple-temporal :upper-bound 35)
+    (sequence (:slack t) (a) (a))))",
+};

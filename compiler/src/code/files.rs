@@ -26,6 +26,14 @@ write `:infinity`, or leave the bound out.",
     right: "",
 };
 
+pub(super) const NO_PROGRAMS: Page = Page {
+    meaning: "`-P`/`--package` and `--entry` say which program of an RMPL source is meant. A network file (`.json`, `.stnu`,
+`.plainstnu`) has events and constraints and no programs, so the option could only be ignored, and kirk ignores nothing
+silently. Leave it out, or give the source the network was compiled from.",
+    wrong: "",
+    right: "",
+};
+
 pub(super) const BAD_OBSERVATION: Page = Page {
     meaning: "`--observe EVENT@T` says that news of EVENT arrives T seconds after the start; a file given with `--observations` is
 a JSON object of event: time. EVENT must be the end of a contingent duration, because everything else is dispatched by

@@ -137,3 +137,15 @@ different arguments can be told apart by these.",
   (sequence (:slack t) (label first (a)) (label last (a)))
   (between (start first) (end last) (simple-temporal :upper-bound 60)))",
 };
+
+pub(super) const RESERVED_NAME: Page = Page {
+    meaning: "The operators of bodies (`sequence`, `parallel`, `with-temporal-constraint`, `delay`, `let`, `let*`, `dotimes`, `label`,
+`between`), `declare`, `t` and `nil` have a meaning of their own. A program of such a name could never be called:
+`(delay)` is always the operator. What the calls of it look like is not reported again.",
+    wrong: "(define-control-program delay ()
+  (declare (primitive) (duration (simple :lower-bound 5 :upper-bound 10))))
+(define-control-program main () (sequence () (delay)))",
+    right: "(define-control-program short-delay ()
+  (declare (primitive) (duration (simple :lower-bound 5 :upper-bound 10))))
+(define-control-program main () (sequence () (short-delay)))",
+};

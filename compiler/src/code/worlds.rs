@@ -30,6 +30,16 @@ pub(super) const UNKNOWN_CLASS: Page = Page {
 (defclass glider (vehicle) ())",
 };
 
+pub(super) const CIRCULAR_CLASS: Page = Page {
+    meaning: "A class extends itself, directly or through the classes it extends. The help shows the way round.",
+    wrong: "(defclass rover (vehicle) ())
+(defclass vehicle (rover) ())
+(define-control-program main () (declare (primitive)))",
+    right: "(defclass vehicle () ())
+(defclass rover (vehicle) ())
+(define-control-program main () (declare (primitive)))",
+};
+
 pub(super) const UNKNOWN_ACCESSOR: Page = Page {
     meaning: "A condition speaks of a slot through its `:reader` or `:accessor`, and no class has one of this name. A slot
 without either cannot be spoken of.",

@@ -87,7 +87,11 @@ fn kind(form: &Form, what: &str, unit: i64, problems: &mut Problems) -> AmountKi
             return AmountKind::Infinite;
         }
         FormKind::Symbol(symbol) if !matches!(symbol.name.as_str(), "t" | "nil") => {
-            match (suffix(&symbol.name), ident(form)) {
+            let help = symbol
+                .package
+                .as_deref()
+                .map_or_else(|| suffix(&symbol.name), |hours| clock(hours, &symbol.name));
+            match (help, ident(form)) {
                 (Some(help), _) => problems.push(not_a_number(form, what).help(help)),
                 (None, Some(name)) => return AmountKind::Named(name),
                 (None, None) => {}
@@ -159,15 +163,37 @@ fn list(form: &Form, what: &str, problems: &mut Problems) -> AmountKind {
     }
 }
 
+/// True for the name of a unit of time.
+pub(super) fn is_unit(word: &str) -> bool {
+    unit(word).is_some()
+}
+
 /// The unit of this name, in the plural or in the singular.
 fn unit(word: &str) -> Option<(&'static str, i64)> {
     UNITS.into_iter().find(|(name, _)| *name == word || name.strip_suffix('s') == Some(word))
 }
 
 fn not_a_number(form: &Form, what: &str) -> Diagnostic {
+    let unquoted = match &form.kind {
+        FormKind::String(text)
+            if text.starts_with(|c: char| c.is_ascii_digit()) && number(text, 1_000_000).is_ok() =>
+        {
+            Some(format!("Take the quotation marks out: `{}`.", clip(text)))
+        }
+        _ => None,
+    };
     Diagnostic::error(Code::NotANumber, form.span, format!("{what} is not a number"))
         .primary(format!("a duration was expected, not {}", form.describe()))
         .help("Write seconds (`15`, `1.5`, `1/2`), a unit (`(minutes 5)`), a named number (`*wait*`) or `:infinity`.")
+        .maybe_help(unquoted)
+}
+
+/// Advice for `1:30`, which is read as a name in a package.
+fn clock(before: &str, after: &str) -> Option<String> {
+    let (minutes, seconds): (u32, u32) = (before.parse().ok()?, after.parse().ok()?);
+    (seconds < 60).then(|| {
+        format!("Write `(+ (minutes {minutes}) {seconds})` for minutes and seconds, `(+ (hours {minutes}) (minutes {seconds}))` for hours and minutes.")
+    })
 }
 
 fn inexact(form: &Form, what: &str, text: &str, error: ParseDurationError) -> Diagnostic {

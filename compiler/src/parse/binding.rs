@@ -19,7 +19,7 @@ pub(super) fn binding(
     problems: &mut Problems,
 ) -> Option<Body> {
     const SHAPE: &str = "Write `(let ((x 5) (y (minutes 2))) body...)`.";
-    let Some((names, body)) = rest.split_first() else {
+    let Some((names, mut body)) = rest.split_first() else {
         problems.push(empty(operator, "this `let` is empty", SHAPE));
         return None;
     };
@@ -41,6 +41,13 @@ pub(super) fn binding(
         problems.lose(names);
         if !names.is_error() {
             problems.push(unexpected(names, "a list of names and values", SHAPE));
+        }
+        // `(let x 5 ...)`: the value belongs to the same slip.
+        if let Some((value, after)) =
+            body.split_first().filter(|(value, _)| names.symbol().is_some() && value.list().is_none())
+        {
+            problems.lose(value);
+            body = after;
         }
     } else {
         for pair in pairs {
@@ -81,8 +88,11 @@ pub(super) fn dotimes(form: &Form, operator: &Form, rest: &[Form], problems: &mu
                 problems.push(unexpected(head, "`(name count)`", SHAPE));
             }
             problems.lose(head);
-            // What is wrong with the shape of the body is worth saying all the same.
-            bodies(body, problems);
+            // What is wrong with the shape of the body is worth saying all the same; in `(dotimes i 3 ...)` it comes after.
+            let count = usize::from(
+                head.symbol().is_some() && body.first().is_some_and(|count| count.list().is_none()),
+            );
+            bodies(&body[count..], problems);
             return None;
         }
     };

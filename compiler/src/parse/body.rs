@@ -25,7 +25,34 @@ pub(crate) const OPERATORS: [&str; 9] = [
 
 /// Parses the forms of a body.
 pub(super) fn bodies(forms: &[Form], problems: &mut Problems) -> Vec<Body> {
-    forms.iter().filter_map(|form| body(form, problems)).collect()
+    let mut found = Vec::new();
+    let mut rest = forms.iter().peekable();
+    while let Some(form) = rest.next() {
+        // `shower()` and `drive(5)`, as calls are written elsewhere.
+        let arguments = rest.next_if(|next| {
+            let is_call = |items: &[Form]| items.first().is_some_and(|first| first.symbol().is_some());
+            form.symbol().is_some() && next.list().is_some_and(|items| !is_call(items))
+        });
+        match arguments {
+            Some(arguments) => call_elsewhere(form, arguments, problems),
+            None => found.extend(body(form, problems)),
+        }
+    }
+    found
+}
+
+#[inline(never)]
+fn call_elsewhere(name: &Form, arguments: &Form, problems: &mut Problems) {
+    let inside = match arguments.list() {
+        Some([_, ..]) => format!("({} ...)", text_of(name)),
+        _ => format!("({})", text_of(name)),
+    };
+    let problem = unexpected(
+        name,
+        "a body form",
+        &format!("The name of what is called stands inside the parentheses: `{inside}`."),
+    );
+    problems.push(Diagnostic { span: name.span.to(arguments.span), ..problem });
 }
 
 /// Parses one body form; `None` if it makes no sense, which is reported.
@@ -71,8 +98,20 @@ fn call(form: &Form, first: &Form, rest: &[Form], problems: &mut Problems) -> Op
         }
         None => {
             if !first.is_error() {
-                let help = "A body form begins with an operator or with the name of a program: `(shower)`.";
-                problems.push(unexpected(first, "an operator or a program", help));
+                let help = match (&first.kind, rest) {
+                    (FormKind::List(_), []) => {
+                        format!("There is a pair of parentheses too many: write `{}`.", text_of(first))
+                    }
+                    (FormKind::List(_), _) => {
+                        "To do several things, write `(sequence (:slack t) ...)` around them.".to_string()
+                    }
+                    (FormKind::String(text), _) => {
+                        format!("Names have no quotation marks: `({} ...)`.", clip(text))
+                    }
+                    _ => "A body form begins with an operator or with the name of a program: `(shower)`."
+                        .to_string(),
+                };
+                problems.push(unexpected(first, "an operator or a program", &help));
             }
             None
         }
@@ -190,6 +229,27 @@ fn within(form: &Form, operator: &Form, rest: &[Form], problems: &mut Problems) 
     let mut limits = Bounds { lower: None, upper: None, span: operator.span };
     let mut rest = rest;
     match rest.split_first() {
+        Some((first, _)) if first.keyword().is_some() => {
+            let given = keywords(rest);
+            problems.push(unwrapped(first, &rest[..given]));
+            let [lower, upper] =
+                options(&rest[..given], ["lower-bound", "upper-bound"], "simple-temporal", problems);
+            limits.lower = lower.map(|form| amount(form, "the lower bound", problems));
+            limits.upper = upper.map(|form| amount(form, "the upper bound", problems));
+            rest = &rest[given..];
+        }
+        Some((_, [body @ .., last]))
+            if last.call().is_some_and(|(word, _)| word == "simple-temporal")
+                && rest[0].call().is_some_and(|(word, _)| !word.starts_with("simple")) =>
+        {
+            problems.push(
+                Diagnostic::error(Code::WrongShape, last.span, "the constraint stands after the body")
+                    .primary("`(simple-temporal ...)` comes first")
+                    .help(SHAPE),
+            );
+            limits = bounds(last, "simple-temporal", problems).unwrap_or(limits);
+            rest = &rest[..=body.len()];
+        }
         Some((first, after))
             if first.call().is_none_or(|(word, _)| {
                 word.starts_with("simple") || after.len() == 1 && !OPERATORS.contains(&word)
@@ -226,6 +286,21 @@ fn within(form: &Form, operator: &Form, rest: &[Form], problems: &mut Problems) 
     Body::WithTemporalConstraint(Within { bounds: limits, body, operator: operator.span, span: form.span })
 }
 
+/// How many of the forms are keywords with their values.
+pub(super) fn keywords(forms: &[Form]) -> usize {
+    let pairs = forms.chunks(2).take_while(|pair| pair[0].keyword().is_some()).count();
+    (2 * pairs).min(forms.len())
+}
+
+/// Bounds without the form they belong in.
+pub(super) fn unwrapped(first: &Form, given: &[Form]) -> Diagnostic {
+    let words: Vec<String> = given.iter().map(text_of).collect();
+    let problem = Diagnostic::error(Code::WrongShape, first.span, "the bounds stand in a form of their own");
+    problem
+        .primary("`(simple-temporal` was expected before this")
+        .help(format!("Write `(simple-temporal {})`.", clip(&words.join(" "))))
+}
+
 /// Says that `(simple-temporal)` means nothing.
 pub(super) fn warn_of_no_bounds(form: &Form, shape: &str, problems: &mut Problems) {
     if form.list().is_some_and(|items| items.len() == 1) {
@@ -242,6 +317,12 @@ fn delay(form: &Form, operator: &Form, rest: &[Form], problems: &mut Problems) -
     const SHAPE: &str =
         "Write `(delay 5 10)`: a wait of 5 to 10 s. `(delay 5 :infinity)` is a wait of at least 5 s.";
     let (lower, upper) = match rest {
+        [limits] if limits.call().is_some_and(|(word, _)| word.starts_with("simple")) => {
+            let message = "the bounds of a delay stand in it as plain numbers";
+            let problem = Diagnostic::error(Code::WrongShape, limits.span, message);
+            problems.push(problem.primary("not understood in a `delay`").help(SHAPE));
+            return None;
+        }
         [both] if both.keyword().is_none() => (both, both),
         [lower, upper] if lower.keyword().is_none() => (lower, upper),
         _ => {
@@ -263,9 +344,12 @@ fn delay(form: &Form, operator: &Form, rest: &[Form], problems: &mut Problems) -
     Some(Body::Delay(Wait { bounds, span: form.span }))
 }
 
-/// True for `()` and lists that begin with a keyword.
+/// True for `()`, lists that begin with a keyword, and `(slack t)`, whose colon is missing.
 fn is_option_list(form: &Form) -> bool {
-    form.list().is_some_and(|items| items.first().is_none_or(|first| first.keyword().is_some()))
+    form.list().is_some_and(|items| match items {
+        [first, value] if first.word() == Some("slack") => matches!(value.word(), Some("t" | "nil")),
+        items => items.first().is_none_or(|first| first.keyword().is_some()),
+    })
 }
 
 fn not_a_body(form: &Form, problems: &mut Problems) {
@@ -274,10 +358,14 @@ fn not_a_body(form: &Form, problems: &mut Problems) {
     }
     let problem =
         unexpected(form, "a body form", "A body form is a list: `(sequence (:slack t) ...)` or a call.");
-    problems.push(match form.symbol() {
-        Some(symbol) => {
+    problems.push(match &form.kind {
+        FormKind::Symbol(symbol) => {
             problem.help(format!("To call the program `{0}`, write `({0})`.", clip(&symbol.name)))
         }
-        None => problem,
+        FormKind::Quote(inner) => problem.help(format!("Take the quote out: `{}`.", text_of(inner))),
+        FormKind::Keyword(_) => {
+            problem.help("A keyword belongs to the list before it: is there a `)` too early?")
+        }
+        _ => problem,
     });
 }

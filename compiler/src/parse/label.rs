@@ -1,6 +1,6 @@
 //! Names for occurrences, and constraints between them: `(label x form)`, `(between (end x) (start y) ...)`.
 
-use super::body::{arguments, bodies, bounds, warn_of_no_bounds};
+use super::body::{arguments, bodies, bounds, unwrapped, warn_of_no_bounds};
 use super::{ident, unexpected};
 use crate::ast::{Argument, Between, Body, EventOf, Ident, Labelled};
 use crate::code::Code;
@@ -51,6 +51,10 @@ pub(super) fn between(form: &Form, operator: &Form, rest: &[Form], problems: &mu
             };
             let problem = Diagnostic::error(Code::WrongShape, operator.span, missing);
             problems.push(problem.primary("two events and a constraint were expected").help(SHAPE));
+            return None;
+        }
+        [_, _, first, ..] if first.keyword().is_some() => {
+            problems.push(unwrapped(first, &rest[2..]));
             return None;
         }
         [_, _, _, extra, ..] => {

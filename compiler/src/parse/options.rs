@@ -1,5 +1,6 @@
 //! Keyword arguments: `:lower-bound 15 :upper-bound 20`.
 
+use super::amount::is_unit;
 use super::{twice, unexpected};
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
@@ -20,22 +21,33 @@ pub(super) fn options<'a, const N: usize>(
     // After a slip nobody knows which keywords are missing: those not given count as given wrongly.
     let mut slipped = false;
     let mut rest = forms.iter().peekable();
+    let mut last: Option<&Form> = None;
     while let Some(form) = rest.next() {
-        let Some(word) = form.keyword() else {
+        let bare = form.word().filter(|word| known.contains(word));
+        if let Some(word) = bare {
+            problems.push(no_colon(form, word));
+        }
+        let Some(word) = form.keyword().or(bare) else {
             slipped = true;
             if !form.is_error() {
-                let wanted = format!("a keyword of `{owner}`");
-                problems.push(unexpected(form, &wanted, &format!("`{owner}` understands {}.", list(&known))));
+                problems.push(no_keyword(form, last, forms, &known, owner));
             }
+            // What comes before the next keyword is the same slip.
+            while rest.next_if(|next| next.keyword().is_none()).is_some() {}
             continue;
         };
         let value = rest.next_if(|next| next.keyword().is_none_or(|word| !known.contains(&word)));
+        last = value;
         let Some(slot) = known.iter().position(|name| *name == word) else {
-            let meant = nearest(word, known).and_then(|near| known.iter().position(|name| *name == near));
-            match meant.filter(|slot| values[*slot].is_none()) {
-                Some(slot) => values[slot] = Some(value.unwrap_or(&MISSING)),
-                None => slipped = true,
+            let meant: Vec<usize> = meant(word, &known);
+            match meant.as_slice() {
+                [slot] if values[*slot].is_none() => values[*slot] = Some(value.unwrap_or(&MISSING)),
+                [_] | [] => slipped = true,
+                several => several.iter().for_each(|slot| {
+                    values[*slot].get_or_insert(&MISSING);
+                }),
             }
+            let meant: Vec<String> = meant.iter().map(|slot| format!("`:{}`", known[*slot])).collect();
             problems.push(
                 Diagnostic::error(
                     Code::UnknownKeyword,
@@ -43,9 +55,9 @@ pub(super) fn options<'a, const N: usize>(
                     format!("`{owner}` has no keyword `:{}`", clip(word)),
                 )
                 .primary("not understood here")
-                .help(match nearest(word, known) {
-                    Some(near) => format!("Did you mean `:{near}`?"),
-                    None => format!("`{owner}` understands {}.", list(&known)),
+                .help(match meant.is_empty() {
+                    false => format!("Did you mean {}?", meant.join(" or ")),
+                    true => format!("`{owner}` understands {}.", list(&known)),
                 }),
             );
             continue;
@@ -61,7 +73,8 @@ pub(super) fn options<'a, const N: usize>(
                 values[slot] = Some(&MISSING);
                 problems.push(
                     Diagnostic::error(Code::WrongShape, form.span, format!("`:{word}` has no value"))
-                        .primary("a value was expected after this keyword"),
+                        .primary("a value was expected after this keyword")
+                        .help(format!("Write `:{word} {}`.", example(word))),
                 );
             }
         }
@@ -85,11 +98,79 @@ pub(super) fn flag(form: &Form, keyword: &str, problems: &mut Problems) -> bool 
         _ => {
             if !form.is_error() {
                 let wanted = format!("`t` or `nil` after `:{keyword}`");
-                problems.push(unexpected(form, &wanted, "`t` means yes and `nil` means no."));
+                let yes = matches!(form.word(), Some("true" | "yes" | "on"));
+                let no = matches!(form.word(), Some("false" | "no" | "off"));
+                let help = match (yes, no) {
+                    (true, _) => "Did you mean `t`?",
+                    (_, true) => "Did you mean `nil`?",
+                    _ => "`t` means yes and `nil` means no.",
+                };
+                problems.push(unexpected(form, &wanted, help));
             }
             true
         }
     }
+}
+
+/// The keywords a wrong one may stand for: the nearest one, else those that are longer and have its parts.
+fn meant(word: &str, known: &[&str]) -> Vec<usize> {
+    let slots =
+        |wanted: &dyn Fn(&str) -> bool| (0..known.len()).filter(|slot| wanted(known[*slot])).collect();
+    let parts_in = |name: &str| {
+        let mut parts = name.split('-');
+        word.split(['-', '_']).all(|part| parts.any(|known| known == part))
+    };
+    let longer: Vec<usize> = slots(&parts_in);
+    if longer.len() > 1 {
+        return longer;
+    }
+    let near = nearest(word, known.iter().copied());
+    let synonym = match word {
+        "max" | "maximum" | "most" | "longest" => Some("upper-bound"),
+        "min" | "minimum" | "least" | "shortest" => Some("lower-bound"),
+        _ => None,
+    };
+    match near.or(synonym) {
+        Some(near) if known.contains(&near) => slots(&|name| name == near),
+        _ => longer,
+    }
+}
+
+fn no_colon(form: &Form, word: &str) -> Diagnostic {
+    Diagnostic::error(Code::WrongShape, form.span, format!("the colon of `:{word}` is missing"))
+        .primary("a keyword was expected")
+        .help(format!("Write `:{word}`: without the colon it is the name of something else."))
+}
+
+/// Something stands where a keyword belongs: numbers without their keywords, or a unit after its number.
+fn no_keyword(form: &Form, last: Option<&Form>, forms: &[Form], known: &[&str], owner: &str) -> Diagnostic {
+    let problem = unexpected(
+        form,
+        &format!("a keyword of `{owner}`"),
+        &format!("`{owner}` understands {}.", list(known)),
+    );
+    let numbers: Vec<String> = forms
+        .iter()
+        .map_while(|form| matches!(form.kind, FormKind::Number(_)).then(|| super::text_of(form)))
+        .collect();
+    let help = match (last.map(|form| &form.kind), form.word(), numbers.as_slice()) {
+        (Some(FormKind::Number(number)), Some(word), _) if is_unit(word) => {
+            Some(format!("A unit stands before its number: `({word} {})`.", clip(number)))
+        }
+        (None, _, [both]) if known.contains(&"upper-bound") => {
+            Some(format!("Every bound has its keyword: `({owner} :lower-bound {both} :upper-bound {both})`."))
+        }
+        (None, _, [lower, upper, ..]) if known.contains(&"upper-bound") => Some(format!(
+            "Every bound has its keyword: `({owner} :lower-bound {lower} :upper-bound {upper})`."
+        )),
+        _ => None,
+    };
+    problem.maybe_help(help)
+}
+
+/// A value such as this keyword takes.
+fn example(word: &str) -> &'static str {
+    if matches!(word, "contingent" | "slack") { "t" } else { "5" }
 }
 
 fn list(known: &[&str]) -> String {

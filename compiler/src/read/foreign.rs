@@ -68,6 +68,8 @@ pub(super) fn foreign_line(line: &str) -> Option<&'static str> {
     } else if starts(&["(define (domain", "(define (problem"]) {
         "PDDL"
     } else if starts(&["def ", "import ", "from ", "class "]) && (line.ends_with(':') || !line.contains('('))
+        || starts(&["for ", "while ", "if ", "with ", "async def "]) && line.ends_with(':')
+        || line.starts_with("print(")
     {
         "Python"
     } else if starts(&["let ", "const ", "var ", "function ", "export "]) {
@@ -89,6 +91,45 @@ pub(super) fn foreign_line(line: &str) -> Option<&'static str> {
     } else {
         return None;
     })
+}
+
+/// The length of something in the text, and what to say about it.
+type Found = (usize, fn(Span) -> Diagnostic);
+
+/// A comment or a string as other languages and word processors write them.
+pub(super) fn foreign_token(text: &str) -> Option<Found> {
+    /// How far the end of a comment is looked for.
+    const NEAR: usize = 10_000;
+    let line = || text.lines().next().unwrap_or("");
+    let comment = |span| {
+        Diagnostic::error(Code::Unreadable, span, "this is a comment of another language")
+            .primary("not RMPL")
+            .help("A comment begins with `;` and goes to the end of the line.")
+    };
+    let curly = |span| {
+        Diagnostic::error(Code::Unreadable, span, "these are not the quotation marks of a program")
+            .primary("not RMPL")
+            .help("A string stands in straight quotation marks: `\"text\"`.")
+    };
+    if text.starts_with("/*") {
+        let end = text.bytes().take(NEAR).zip(text.bytes().skip(1)).position(|pair| pair == (b'*', b'/'));
+        return Some((end.map_or_else(|| line().len(), |at| at + 2), comment));
+    }
+    let hash =
+        text.strip_prefix('#').is_some_and(|rest| rest.is_empty() || rest.starts_with([' ', '\t', '#']));
+    if text.starts_with("//") || hash {
+        return Some((line().len(), comment));
+    }
+    let closing = match text.chars().next()? {
+        '“' | '„' => ['”', '“'],
+        '«' => ['»', '»'],
+        '‘' => ['’', '’'],
+        _ => return None,
+    };
+    let opened = text.chars().next().map_or(0, char::len_utf8);
+    let line = line();
+    let end = line[opened..].char_indices().find(|(_, c)| closing.contains(c));
+    Some((end.map_or(line.len(), |(at, c)| opened + at + c.len_utf8()), curly))
 }
 
 fn not_text(source: u32, text: &str, at: usize) -> Diagnostic {

@@ -1,0 +1,31 @@
+//! Where the constraints of a network stand in the file it was read from.
+
+use std::ops::Range;
+
+use crate::conflict::Part;
+
+/// Byte ranges in the text of a network file.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Places {
+    /// For each requirement, what says its upper bound and what says its lower one.
+    pub requirements: Vec<[Range<usize>; 2]>,
+    /// For each contingent link, the element it begins with.
+    pub contingents: Vec<Range<usize>>,
+}
+
+impl Places {
+    /// What says this part of a conflict; `None` for what goes without saying.
+    pub fn of(&self, part: Part) -> Option<Range<usize>> {
+        match part {
+            Part::RequirementUpper(index) => self.requirements.get(index).map(|[upper, _]| upper.clone()),
+            Part::RequirementLower(index) | Part::Join(index) => {
+                self.requirements.get(index).map(|[_, lower]| lower.clone())
+            }
+            Part::LinkLower(index)
+            | Part::LinkUpper(index)
+            | Part::DelayMin(index)
+            | Part::DelayMax(index) => self.contingents.get(index).cloned(),
+            Part::AfterOrigin => None,
+        }
+    }
+}

@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use crate::args::{Check, CheckFormat, Common, Delays};
 use crate::conflict::{self, MemberJson};
-use crate::input::{Input, load};
+use crate::input::{Input, load, shown};
 use crate::json::line;
 use crate::news::treatment;
 use crate::output::{Status, print, print_line};
@@ -22,8 +22,11 @@ use crate::sarif::Log;
 pub(crate) fn check(arguments: &Check, common: &Common) -> io::Result<Status> {
     let mut worst = Status::Yes;
     let mut log = Log::default();
-    for file in &arguments.files {
-        let mut input = load(file, &arguments.selection);
+    for (index, file) in arguments.files.iter().enumerate() {
+        let mut input = match file == "-" && arguments.files[..index].contains(file) {
+            true => Input::twice(),
+            false => load(file, &arguments.selection),
+        };
         let judged = judge_assuming(&mut input, arguments.delays);
         worst = worst.max(match &judged {
             None => Status::Wrong,
@@ -31,13 +34,13 @@ pub(crate) fn check(arguments: &Check, common: &Common) -> io::Result<Status> {
             Some(Judged { conflict: Some(_), .. }) => Status::No,
         });
         let reporter = Reporter::new(&input.sources);
-        let document = || CheckJson::new(file, &input, judged.as_ref(), arguments.delays, &reporter);
+        let document = || CheckJson::new(shown(file), &input, judged.as_ref(), arguments.delays, &reporter);
         match arguments.format {
             CheckFormat::Json => print(&line(&document())?)?,
             CheckFormat::Sarif => log.add(&input, &reporter, &document()),
             CheckFormat::Text => {
                 reporter.show(&input.diagnostics, common)?;
-                print_line(&verdict_line(file, &input, judged.as_ref(), arguments))?;
+                print_line(&verdict_line(shown(file), &input, judged.as_ref(), arguments))?;
                 if common.verbose
                     && let Some(network) = &input.network
                 {

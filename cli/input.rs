@@ -89,7 +89,7 @@ pub(crate) fn load_all(files: &[String], selection: &Selection) -> Input {
 }
 
 /// What to call a file in messages.
-fn shown(file: &str) -> &str {
+pub(crate) fn shown(file: &str) -> &str {
     if file == "-" { "<stdin>" } else { file }
 }
 
@@ -214,6 +214,12 @@ fn named(network: Network, file: &str) -> Network {
 }
 
 impl Input {
+    /// Standard input, which was read already.
+    pub(crate) fn twice() -> Input {
+        let message = "standard input is given twice, and can be read only once";
+        Input::broken(shown("-"), Diagnostic::error(Code::CannotRead, Span::default(), message))
+    }
+
     fn broken(name: &str, diagnostic: Diagnostic) -> Input {
         Input {
             sources: vec![Source::new(name, "")],

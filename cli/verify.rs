@@ -9,15 +9,19 @@ use kirk_runtime::{Execution, verify as check};
 use serde::Serialize;
 
 use crate::args::{Common, Selection, TextOrJson, Verify};
-use crate::input::{load_all, read};
+use crate::input::{load_all, read, shown};
 use crate::json::line;
-use crate::output::{Status, print, print_line};
+use crate::output::{Status, complain, print, print_line};
 use crate::report::Reporter;
 
 /// Records are written by machines.
 const LARGEST_RECORD: u64 = 256 << 20;
 
 pub(crate) fn verify(arguments: &Verify, common: &Common) -> io::Result<Status> {
+    if arguments.execution == "-" && arguments.files.iter().any(|file| file == "-") {
+        complain("the execution and the mission cannot both be standard input");
+        return Ok(Status::Wrong);
+    }
     let execution = match read_execution(&arguments.execution) {
         Ok(execution) => Some(execution),
         Err(wrong) => {
@@ -68,7 +72,10 @@ pub(crate) fn verify(arguments: &Verify, common: &Common) -> io::Result<Status> 
 
 fn read_execution(file: &str) -> Result<Execution, Box<(Source, Diagnostic)>> {
     let bytes = read(file, LARGEST_RECORD).map_err(|message| {
-        Box::new((Source::new(file, ""), Diagnostic::error(Code::CannotRead, Span::default(), message)))
+        Box::new((
+            Source::new(shown(file), ""),
+            Diagnostic::error(Code::CannotRead, Span::default(), message),
+        ))
     })?;
     let text = String::from_utf8_lossy(&bytes).into_owned();
     let read: Result<Execution, _> = serde_json::from_str(&text);
@@ -77,13 +84,13 @@ fn read_execution(file: &str) -> Result<Execution, Box<(Source, Diagnostic)>> {
     {
         let message = format!("the format is `{}`; this kirk reads `{FORMAT}`", execution.format);
         let diagnostic = Diagnostic::error(Code::BadRecord, Span::new(0, 0, 0), message);
-        return Err(Box::new((Source::new(file, text.as_str()), diagnostic)));
+        return Err(Box::new((Source::new(shown(file), text.as_str()), diagnostic)));
     }
     read.map_err(|error| {
         let ReadProblem { offset, message } = locate(&text, &error);
         let diagnostic = Diagnostic::error(Code::BadRecord, Span::new(0, offset, offset), message)
             .help("kirk run --format json writes such a record");
-        Box::new((Source::new(file, text.as_str()), diagnostic))
+        Box::new((Source::new(shown(file), text.as_str()), diagnostic))
     })
 }
 

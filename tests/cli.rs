@@ -394,3 +394,72 @@ fn the_benchmark_networks_are_checked_in_one_command() {
         assert_eq!(document["controllable"], known.split('\t').nth(1) == Some("dc"), "{known}");
     }
 }
+
+#[test]
+fn options_that_choose_a_program_are_refused_with_a_network() {
+    let network = "tests/networks/lane50_dc_000.json";
+    for arguments in [
+        &["check", network, "-P", "rovers"][..],
+        &["check", network, "--entry", "main"],
+        &["run", network, "--simulate", "--entry", "main"],
+        &["compile", network, "--package", "rovers"],
+    ] {
+        is_refused(arguments, b"", "K0704");
+    }
+}
+
+#[test]
+fn standard_input_is_read_once() {
+    is_refused(&["check", "-", "-"], b"(define-control-program main () (sequence ()))", "given twice");
+    is_refused(&["verify", "-", "-"], b"", "both");
+}
+
+#[test]
+fn a_conflict_points_at_the_elements_of_a_network_file() {
+    let network = br#"{"format": "kirk-network/1", "name": "n", "origin": "z", "events": ["z", "a"],
+"requirements": [
+  {"from": "z", "to": "a", "lower": 5},
+  {"from": "z", "to": "a", "upper": 3}]}"#;
+    let output = kirk_with_input(&["check", "-", "--format", "json"], network);
+    let said: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let conflict = &said["diagnostics"][0];
+    assert_eq!(conflict["code"], "K0601");
+    assert_eq!(conflict["span"]["start"]["line"], 4);
+    assert_eq!(conflict["labels"][1]["span"]["start"]["line"], 3);
+    assert_eq!(conflict["help"], "These do not go together: 3 - 5 = -2 < 0.");
+}
+
+#[test]
+fn explain_lists_codes_and_knows_them_in_any_dress() {
+    let said = |arguments: &[&str]| stdout(&kirk(&[&["explain"], arguments].concat()));
+    assert_eq!(said(&[]), said(&["--list"]));
+    assert!(said(&[]).lines().count() > 60 && said(&[]).starts_with("K0101  "));
+    for code in ["K0203", "k203", "203", "error[K0203]:"] {
+        assert!(said(&[code]).starts_with("K0203: "), "{code}");
+    }
+    is_refused(&["explain", "K0299"], b"", "K0203  not a keyword");
+    is_refused(&["explain", "nonsense"], b"", "lists them all");
+}
+
+#[test]
+fn what_could_not_be_decided_is_null() {
+    let output = kirk_with_input(&["check", "-", "--format", "json"], b"(((");
+    let said: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(said["controllable"], Value::Null);
+    let fields: Vec<&str> = said.as_object().unwrap().keys().map(String::as_str).collect();
+    let promised = [
+        "conflict",
+        "conservative",
+        "contingents",
+        "controllable",
+        "diagnostics",
+        "events",
+        "file",
+        "format",
+        "kind",
+        "requirements",
+        "seconds",
+    ];
+    assert_eq!(fields, promised);
+}

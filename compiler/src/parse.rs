@@ -14,6 +14,8 @@ mod package;
 pub(crate) use body::OPERATORS;
 pub(crate) use elsewhere::instead_of_operator;
 
+use std::collections::BTreeMap;
+
 use crate::ast::{ControlProgram, Ident, NamedNumber, Program};
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
@@ -263,6 +265,7 @@ fn is_body(rest: &[Form], items: &[Form]) -> bool {
 
 fn parameters(items: &[Form], problems: &mut Problems) -> Vec<Ident> {
     let mut names: Vec<Ident> = Vec::new();
+    let mut firsts: BTreeMap<String, Span> = BTreeMap::new();
     for item in items {
         match ident(item) {
             Some(name) if name.name.starts_with('&') => problems.push(
@@ -279,12 +282,12 @@ fn parameters(items: &[Form], problems: &mut Problems) -> Vec<Ident> {
                 names.push(name);
             }
             Some(name) => {
-                if let Some(first) = names.iter().find(|known| known.name == name.name) {
+                if let Some(first) = firsts.insert(name.name.clone(), item.span) {
                     let message = format!("the parameter `{}` is there twice", clip(&name.name));
                     problems.push(
                         Diagnostic::error(Code::DefinedTwice, item.span, message)
                             .primary("again here")
-                            .label(first.span, "first here"),
+                            .label(first, "first here"),
                     );
                 }
                 names.push(name);

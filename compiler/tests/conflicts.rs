@@ -79,3 +79,21 @@ fn nothing_uncertain_and_still_too_much_to_do() {
 "
     ));
 }
+
+#[test]
+fn joins_alone_are_named() {
+    let side_by_side = |part: &str| {
+        explanation(&format!(
+            "(define-control-program a ()
+  (declare (primitive) (duration (simple :lower-bound 5 :upper-bound 10))))
+(define-control-program b ()
+  (declare (primitive) (duration (simple :lower-bound 15 :upper-bound 20))))
+(define-control-program main ()
+  (parallel (:slack nil)
+    (a)
+    {part}))
+"
+        ))
+    };
+    insta::assert_snapshot!([side_by_side("(sequence ())"), side_by_side("(b)")].join("\n"));
+}

@@ -411,6 +411,12 @@ pub fn locate(text: &str, error: &serde_json::Error) -> ReadProblem {
 
 /// Words an error of serde_json, which counts lines and columns within `part` (that starts at `start` of `text`).
 fn problem(text: &str, start: usize, element: &str, part: &str, error: &serde_json::Error) -> ReadProblem {
+    if part.trim().is_empty() {
+        return ReadProblem {
+            offset: start,
+            message: "there is nothing here; a JSON document was expected".to_string(),
+        };
+    }
     let line_start: usize =
         part.split_inclusive('\n').take(error.line().saturating_sub(1)).map(str::len).sum::<usize>();
     let mut offset = (start + line_start + error.column().saturating_sub(1)).min(text.len());

@@ -14,7 +14,7 @@ use crate::lower::{Origins, events_of};
 use crate::source::Span;
 
 /// Networks of more events than this are not looked at: it takes as long as the verdict, and nobody wrote them by hand.
-const MOST_EVENTS: usize = 20_000;
+const MOST_EVENTS: usize = 5_000;
 /// How many notes one program gets.
 const MOST_NOTES: usize = 10;
 

@@ -1,5 +1,7 @@
 //! Names for values and repetitions: `(let ((x 5)) body...)`, `(dotimes (i 3) body...)`.
 
+use std::collections::BTreeMap;
+
 use super::amount::amount;
 use super::body::{argument, bodies};
 use super::{ident, unexpected};
@@ -8,6 +10,7 @@ use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::form::{Form, clip};
 use crate::problem::Problems;
+use crate::source::Span;
 
 /// Parses `let` and `let*`.
 #[inline(never)]
@@ -54,14 +57,15 @@ pub(super) fn binding(
             bindings.extend(one(pair, SHAPE, problems));
         }
     }
-    for (index, (name, _)) in bindings.iter().enumerate() {
-        let first = bindings[..index].iter().find(|(other, _)| other.name == name.name);
-        if let Some((first, _)) = first.filter(|_| !sequential) {
+    let mut firsts: BTreeMap<&str, Span> = BTreeMap::new();
+    for (name, _) in &bindings {
+        let first = firsts.insert(&name.name, name.span);
+        if let Some(first) = first.filter(|_| !sequential) {
             let message = format!("`{}` is given two values", clip(&name.name));
             problems.push(
                 Diagnostic::error(Code::DefinedTwice, name.span, message)
                     .primary("again here")
-                    .label(first.span, "first here"),
+                    .label(first, "first here"),
             );
         }
     }

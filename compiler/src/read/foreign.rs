@@ -99,7 +99,7 @@ type Found = (usize, fn(Span) -> Diagnostic);
 /// A comment or a string as other languages and word processors write them.
 pub(super) fn foreign_token(text: &str) -> Option<Found> {
     /// How far the end of a comment is looked for.
-    const NEAR: usize = 10_000;
+    const NEAR: usize = 1_000;
     let line = || text.lines().next().unwrap_or("");
     let comment = |span| {
         Diagnostic::error(Code::Unreadable, span, "this is a comment of another language")
@@ -127,9 +127,9 @@ pub(super) fn foreign_token(text: &str) -> Option<Found> {
         _ => return None,
     };
     let opened = text.chars().next().map_or(0, char::len_utf8);
-    let line = line();
-    let end = line[opened..].char_indices().find(|(_, c)| closing.contains(c));
-    Some((end.map_or(line.len(), |(at, c)| opened + at + c.len_utf8()), curly))
+    let mut end = text[opened..].char_indices().find(|(_, c)| closing.contains(c) || *c == '\n');
+    end = end.filter(|(_, c)| *c != '\n');
+    Some((end.map_or_else(|| line().len(), |(at, c)| opened + at + c.len_utf8()), curly))
 }
 
 fn not_text(source: u32, text: &str, at: usize) -> Diagnostic {

@@ -1,0 +1,77 @@
+//! `check --format sarif`: one log for all files, as editors and code hosts read it.
+
+#![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
+
+mod binary;
+
+use binary::{kirk, kirk_with_input, stderr, stdout};
+use serde_json::{Value, json};
+
+/// Runs a check; its log, and its exit status.
+fn log(arguments: &[&str]) -> (Value, Option<i32>) {
+    let output = kirk(&[&["check", "--format", "sarif"], arguments].concat());
+    assert_eq!(stderr(&output), "", "everything is in the log");
+    (serde_json::from_str(&stdout(&output)).unwrap(), output.status.code())
+}
+
+#[test]
+fn a_log_has_the_rules_the_results_and_the_verdicts() {
+    let (mut log, status) = log(&["examples/rmpl/too-late.rmpl", "tests/rmpl/bad/K0302-let-twice.rmpl"]);
+    assert_eq!(status, Some(2));
+    let run = &mut log["runs"][0];
+    for artifact in run["artifacts"].as_array_mut().unwrap() {
+        artifact["properties"]["seconds"] = json!("(seconds)");
+    }
+    run["tool"]["driver"]["semanticVersion"] = json!("(version)");
+    insta::assert_snapshot!(serde_json::to_string_pretty(&log).unwrap());
+}
+
+#[test]
+fn every_bad_program_and_every_unreadable_file_is_in_the_log() {
+    let mut files: Vec<String> = std::fs::read_dir("tests/rmpl/bad")
+        .unwrap()
+        .map(|entry| entry.unwrap().path().to_str().unwrap().to_string())
+        .collect();
+    files.sort();
+    files.extend(
+        ["no/such file.rmpl", "examples", "tests/networks/lane50_notDC_000.stnu"].map(str::to_string),
+    );
+    let arguments: Vec<&str> = files.iter().map(String::as_str).collect();
+    let (log, status) = log(&arguments);
+    assert_eq!(status, Some(2));
+    let run = &log["runs"][0];
+    let artifacts = run["artifacts"].as_array().unwrap();
+    assert_eq!(artifacts.len(), files.len());
+    assert_eq!(artifacts[files.len() - 3]["location"]["uri"], "no/such%20file.rmpl");
+    assert_eq!(artifacts[files.len() - 3]["properties"]["controllable"], Value::Null);
+    assert_eq!(artifacts[files.len() - 1]["properties"]["controllable"], false);
+    let rules = run["tool"]["driver"]["rules"].as_array().unwrap();
+    let results = run["results"].as_array().unwrap();
+    assert!(results.len() > 400, "only {} results", results.len());
+    for result in results {
+        let rule = &rules[result["ruleIndex"].as_u64().unwrap() as usize];
+        assert_eq!(rule["id"], result["ruleId"]);
+        assert!(rule["help"]["text"].as_str().unwrap().starts_with(result["ruleId"].as_str().unwrap()));
+        let related = result["relatedLocations"].as_array().unwrap();
+        for location in result["locations"].as_array().unwrap().iter().chain(related) {
+            let place = &location["physicalLocation"];
+            let artifact = &artifacts[place["artifactLocation"]["index"].as_u64().unwrap() as usize];
+            assert_eq!(artifact["location"]["uri"], place["artifactLocation"]["uri"]);
+            let number = |name: &str| place["region"][name].as_u64().unwrap();
+            let start = (number("startLine"), number("startColumn"));
+            assert!(start >= (1, 1) && start <= (number("endLine"), number("endColumn")), "{location}");
+        }
+    }
+}
+
+#[test]
+fn the_exit_status_is_that_of_a_check() {
+    assert_eq!(log(&["examples/rmpl/eat-and-bike.rmpl"]).1, Some(0));
+    assert_eq!(log(&["examples/rmpl/too-late.rmpl", "examples/rmpl/eat-and-bike.rmpl"]).1, Some(1));
+    let output = kirk_with_input(&["check", "--format", "sarif", "-"], "(ä (b)".as_bytes());
+    assert_eq!(output.status.code(), Some(2));
+    let log: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(log["runs"][0]["invocations"][0]["exitCode"], 2);
+    // Columns count characters.
+    assert_eq!(log["runs"][0]["columnKind"], "unicodeCodePoints");
+}

@@ -32,6 +32,7 @@
 //! | compile | [`mod@dispatchable`] | plain STNU | [`Dispatchable`] |
 //!
 //! [`mod@punctual`] finds the events of a controllable network that can never be executed late.
+//! [`mod@windows`] says between which times each event can happen at all.
 //! [`json`], [`graphml`], [`plain`], [`dot`] and [`text`] are the formats, [`generate`] makes networks to measure with.
 //!
 //! # Words
@@ -73,6 +74,7 @@ pub mod stnu;
 pub mod text;
 pub mod time;
 mod trees;
+pub mod windows;
 
 pub use check::{Verdict, check};
 pub use conflict::{Conflict, Part, Share};

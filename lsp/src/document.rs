@@ -1,0 +1,130 @@
+//! A text that is open in an editor: edited piece by piece, analysed when it is asked about.
+
+use std::sync::Arc;
+
+use kirk_compiler::Diagnostic;
+use lsp_types::{TextDocumentContentChangeEvent, Uri};
+
+use crate::analysis::{Analysis, Unjudged, analyse};
+use crate::lines::{Encoding, Lines};
+use crate::mission::Mission;
+use crate::view::{Shift, View};
+
+/// An open document.
+#[derive(Debug)]
+pub(crate) struct Document {
+    pub(crate) uri: Uri,
+    pub(crate) version: i32,
+    /// Counts its texts, so that a verdict on an earlier one is known as such.
+    pub(crate) generation: u64,
+    text: String,
+    analysis: Option<Arc<Analysis>>,
+    /// What is left to be judged of the analysis.
+    unjudged: Option<Unjudged>,
+    /// The last text that could be judged, and what came of it.
+    judged: Option<Judged>,
+    /// True if the newest text has been handed on, to be judged or to the client.
+    pub(crate) handed_on: bool,
+    /// True if the client has been told of it.
+    pub(crate) settled: bool,
+}
+
+#[derive(Debug)]
+struct Judged {
+    generation: u64,
+    text: String,
+    missions: Arc<Vec<Mission>>,
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl Document {
+    pub(crate) fn new(uri: Uri, version: i32, text: String) -> Document {
+        Document {
+            uri,
+            version,
+            generation: 0,
+            text,
+            analysis: None,
+            unjudged: None,
+            judged: None,
+            handed_on: false,
+            settled: false,
+        }
+    }
+
+    /// Applies changes one after the other.
+    pub(crate) fn change(
+        &mut self,
+        version: i32,
+        changes: Vec<TextDocumentContentChangeEvent>,
+        encoding: Encoding,
+    ) {
+        for change in changes {
+            match change.range {
+                None => self.text = change.text,
+                Some(range) => {
+                    let lines = Lines::new(&self.text);
+                    let start = lines.offset(&self.text, range.start, encoding);
+                    let end = lines.offset(&self.text, range.end, encoding);
+                    self.text.replace_range(start..end.max(start), &change.text);
+                }
+            }
+        }
+        self.version = version;
+        self.generation += 1;
+        self.analysis = None;
+        self.unjudged = None;
+        self.handed_on = false;
+        self.settled = false;
+    }
+
+    /// The analysis of the newest text.
+    pub(crate) fn analysis(&mut self) -> Arc<Analysis> {
+        if let Some(analysis) = &self.analysis {
+            return analysis.clone();
+        }
+        let (analysis, unjudged) = analyse(self.text.clone());
+        let analysis = Arc::new(analysis);
+        self.analysis = Some(analysis.clone());
+        self.unjudged = Some(unjudged);
+        analysis
+    }
+
+    /// What is to be judged of the newest text, once.
+    pub(crate) fn take_unjudged(&mut self) -> Option<Unjudged> {
+        self.analysis();
+        self.unjudged.take().filter(|unjudged| !unjudged.roots.is_empty())
+    }
+
+    /// Keeps what came of judging the text of a generation; false if there is a newer text.
+    pub(crate) fn keep(
+        &mut self,
+        generation: u64,
+        text: String,
+        missions: Vec<Mission>,
+        diagnostics: Vec<Diagnostic>,
+    ) -> bool {
+        self.judged = Some(Judged { generation, text, missions: Arc::new(missions), diagnostics });
+        generation == self.generation
+    }
+
+    /// What there is to say about the newest text as far as it is known, sorted by place.
+    pub(crate) fn diagnostics(&mut self) -> Vec<Diagnostic> {
+        let mut all = self.analysis().diagnostics.clone();
+        if let Some(judged) = self.judged.as_ref().filter(|judged| judged.generation == self.generation) {
+            all.extend(judged.diagnostics.iter().cloned());
+            all.sort_by_key(|d| (d.span, d.severity, d.code));
+        }
+        all
+    }
+
+    /// The newest text with the last missions known.
+    pub(crate) fn view(&mut self) -> View {
+        let analysis = self.analysis();
+        let (missions, shift) = match &self.judged {
+            Some(judged) => (judged.missions.clone(), Shift::new(&judged.text, analysis.text())),
+            None => (Arc::default(), Shift::default()),
+        };
+        View { analysis, missions, shift }
+    }
+}

@@ -1,0 +1,166 @@
+//! What there is to know about the name under the cursor: what it is, how long it takes, when it happens.
+
+use kirk_compiler::ast::{Amount, AmountKind, ControlProgram, DurationOf};
+use kirk_compiler::episode::Kind;
+use kirk_compiler::{Source, Span, Symbol, SymbolKind};
+use kirk_network::windows::Window;
+
+use crate::analysis::Analysis;
+use crate::mission::{Mission, Occurrence};
+use crate::view::View;
+
+/// What to show, in Markdown, and what it is about.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Hover {
+    /// The name, or the operator.
+    pub span: Span,
+    /// What there is to know.
+    pub markdown: String,
+}
+
+/// How many occurrences of one place are described; the rest are counted.
+const MOST_OCCURRENCES: usize = 5;
+
+/// What there is to know about what stands at an offset.
+pub fn hover(view: &View, offset: u32) -> Option<Hover> {
+    let analysis = &*view.analysis;
+    let (symbol, place) = analysis.symbols.at(0, offset)?;
+    let mut parts = vec![what(analysis, symbol)];
+    if let SymbolKind::Program(_) = symbol.kind {
+        let form = if place.definition { place.span } else { call_around(analysis, place.span) };
+        parts.extend(occurrences(view, form));
+    }
+    parts.retain(|part| !part.is_empty());
+    Some(Hover { span: place.span, markdown: parts.join("\n\n") })
+}
+
+/// What a symbol is.
+fn what(analysis: &Analysis, symbol: &Symbol) -> String {
+    let name = &symbol.name;
+    match symbol.kind {
+        SymbolKind::Program(index) => program(&analysis.source, &analysis.program.programs[index]),
+        SymbolKind::Parameter(index) => {
+            format!("`{name}`: a parameter of `{}`", analysis.program.programs[index].name.name)
+        }
+        SymbolKind::Variable => format!("`{name}`: a variable"),
+        SymbolKind::Label => format!("`{name}`: a label, which names an occurrence"),
+        SymbolKind::NamedNumber(index) => {
+            format!("`{name}` = {}", amount(&analysis.source, &analysis.program.parameters[index].value))
+        }
+        SymbolKind::Class(_) => format!("`{name}`: a class"),
+        SymbolKind::Slot(class) => {
+            format!("`{name}`: a slot of `{}`", analysis.program.classes[class].name.name)
+        }
+        SymbolKind::Accessor => format!("`{name}`: reads a slot"),
+        SymbolKind::Package => format!("`{name}`: a package"),
+    }
+}
+
+/// How a program is called, how long it takes, and what it is for.
+pub(crate) fn program(source: &Source, program: &ControlProgram) -> String {
+    let words: Vec<&str> =
+        std::iter::once(&program.name).chain(&program.parameters).map(|ident| ident.name.as_str()).collect();
+    let mut text = format!("```lisp\n({})\n```", words.join(" "));
+    let takes = match (&program.duration, program.primitive) {
+        (Some(duration), _) => takes(source, duration),
+        (None, true) => "takes any time, as we choose".to_string(),
+        (None, false) => String::new(),
+    };
+    for part in [Some(takes), program.documentation.clone()].into_iter().flatten() {
+        if !part.is_empty() {
+            text.push_str("\n\n");
+            text.push_str(&part);
+        }
+    }
+    text
+}
+
+/// How long a primitive program takes, who decides, and how late its end is heard.
+fn takes(source: &Source, duration: &DurationOf) -> String {
+    let shown = |written: &Option<Amount>, missing: &str| match written {
+        Some(written) => amount(source, written),
+        None => missing.to_string(),
+    };
+    let range = |lower: &Option<Amount>, upper: &Option<Amount>| match (lower, upper) {
+        (lower, None) => format!("at least {}", shown(lower, "0 s")),
+        (None, Some(upper)) => format!("at most {}", amount(source, upper)),
+        (Some(lower), Some(upper)) => format!("{} to {}", amount(source, lower), amount(source, upper)),
+    };
+    let who = if duration.contingent { "Nature decides" } else { "as we choose" };
+    let mut text = format!("takes {}, {who}", range(&duration.bounds.lower, &duration.bounds.upper));
+    if let Some(delay) = &duration.delay {
+        text.push_str(&format!(
+            "; the news of its end comes {} to {} later",
+            shown(&delay.lower, "0 s"),
+            shown(&delay.upper, "0 s")
+        ));
+    }
+    text
+}
+
+/// A number as seconds, or as it is written.
+fn amount(source: &Source, amount: &Amount) -> String {
+    match &amount.kind {
+        AmountKind::Number(number) => format!("{number} s"),
+        AmountKind::Infinite => "any time".to_string(),
+        _ => format!("`{}`", source.slice(amount.span)),
+    }
+}
+
+/// The form whose first word is the name at `name`: the call.
+fn call_around(analysis: &Analysis, name: Span) -> Span {
+    let mut around = name;
+    let mut forms = &analysis.forms[..];
+    while let Some(form) =
+        forms.iter().find(|form| form.span.start <= name.start && name.end <= form.span.end)
+    {
+        let Some(items) = form.list() else { break };
+        if items.first().is_some_and(|first| first.span == name) {
+            around = form.span;
+        }
+        forms = items;
+    }
+    around
+}
+
+/// When what stands at a place happens.
+fn occurrences(view: &View, form: Span) -> Option<String> {
+    let all = view.occurrences(form);
+    let mut lines: Vec<String> = all
+        .iter()
+        .filter(|(_, occurrence)| matches!(occurrence.kind, Kind::Primitive | Kind::Program))
+        .take(MOST_OCCURRENCES)
+        .filter_map(|(mission, occurrence)| times(mission, occurrence))
+        .collect();
+    if all.len() > lines.len() && !lines.is_empty() {
+        lines.push(format!("- and {} more", all.len() - lines.len()));
+    }
+    (!lines.is_empty()).then(|| lines.join("\n"))
+}
+
+fn times(mission: &Mission, occurrence: &Occurrence) -> Option<String> {
+    let (start, end) = (mission.window(occurrence.start)?, mission.window(occurrence.end)?);
+    let mut text = format!("- `{}` starts {} and ends {}", occurrence.name, when(start), when(end));
+    if let Some(slack) = slack(start) {
+        text.push_str(&format!("; slack {slack}"));
+    }
+    Some(text)
+}
+
+/// `at 5 s`, `from 5 to 20 s`, `from 5 s on`.
+pub(crate) fn when(window: Window) -> String {
+    match window.latest {
+        Some(latest) if latest == window.earliest => format!("at {latest} s"),
+        Some(latest) => format!("from {} to {latest} s", window.earliest),
+        None => format!("from {} s on", window.earliest),
+    }
+}
+
+/// By how much a start can shift; `None` if it is fixed.
+fn slack(start: Window) -> Option<String> {
+    match start.latest {
+        Some(latest) if latest == start.earliest => None,
+        Some(latest) => latest.checked_since(start.earliest).map(|slack| format!("{slack} s")),
+        None => Some("without limit".to_string()),
+    }
+}

@@ -150,6 +150,17 @@ fn an_editor_opens_changes_asks_and_leaves() {
         ["at most 9 s from start to end of this: +9", "Nature may take up to 10 s for `drill`: -10"]
     );
 
+    // What would put it right is offered, in the units of the protocol.
+    let range = told[0]["range"].clone();
+    let asked = json!({"textDocument": {"uri": URI}, "range": range, "context": {"diagnostics": []}});
+    let actions = editor.ask("textDocument/codeAction", asked).unwrap();
+    assert_eq!(actions[0]["title"], "Allow 1 s more: `10`");
+    assert_eq!(
+        actions[0]["edit"]["changes"][URI],
+        json!([{"newText": "10", "range": {"start": {"line": 4, "character": 58}, "end": {"line": 4, "character": 59}}}])
+    );
+    assert_eq!(actions[0]["diagnostics"][0]["code"], "K0601");
+
     // A slip: the verdict goes, the slip is shown.
     editor.tell("textDocument/didChange", change(2, (5, 5), (5, 10), "drlil"));
     assert_eq!(codes(&editor.diagnostics(2)), ["K0301"]);
@@ -164,10 +175,70 @@ fn an_editor_opens_changes_asks_and_leaves() {
     let definition = editor.ask("textDocument/definition", at(5, 6)).unwrap();
     assert_eq!(definition[0]["range"]["start"], json!({"line": 1, "character": 24}));
 
+    let lenses = editor.ask("textDocument/codeLens", json!({"textDocument": {"uri": URI}})).unwrap();
+    assert_eq!(
+        lenses[0]["command"]["title"],
+        "controllable: whatever happens, takes 5 to 10 s, 1 contingent duration"
+    );
+
+    let rename = |position: Value, name: &str| {
+        let mut params = position;
+        params["newName"] = json!(name);
+        params
+    };
+    let renamed = editor.ask("textDocument/rename", rename(at(5, 6), "bohren")).unwrap();
+    assert_eq!(renamed["changes"][URI].as_array().unwrap().len(), 2);
+    let refused = editor.ask("textDocument/rename", rename(at(3, 26), "bohren")).unwrap_err();
+    assert!(refused["message"].as_str().unwrap().contains("starts with `main`"), "{refused}");
+    let layout = json!({"textDocument": {"uri": URI}, "options": {"tabSize": 2, "insertSpaces": true}});
+    let edits = editor.ask("textDocument/formatting", layout).unwrap();
+    assert!(edits.as_array().unwrap().iter().all(|edit| edit["newText"].as_str().unwrap().contains("\r\n")));
+
+    // Closed, it is nobody's business any more.
+    editor.tell("textDocument/didClose", json!({"textDocument": {"uri": URI}}));
+    assert_eq!(editor.ask("textDocument/hover", at(5, 6)).unwrap_err()["code"], -32602);
+    assert!(editor.told.iter().any(|told| told["params"]["diagnostics"] == json!([])));
+
     assert_eq!(editor.ask("shutdown", Value::Null), Ok(Value::Null));
     assert_eq!(editor.ask("textDocument/hover", at(5, 6)).unwrap_err()["code"], -32600);
     editor.tell("exit", Value::Null);
     assert_eq!(editor.leave(), Some(0));
+}
+
+#[test]
+fn columns_are_bytes_for_an_editor_that_offers_it() {
+    let mut editor = Editor::start();
+    let offered = json!({"capabilities": {"general": {"positionEncodings": ["utf-16", "utf-8"]}}});
+    let answer = editor.ask("initialize", offered).unwrap();
+    assert_eq!(answer["capabilities"]["positionEncoding"], "utf-8");
+    let text = "#| ö𝄞 |# (define-control-program main () (delay 5))";
+    let document = json!({"uri": URI, "languageId": "rmpl", "version": 1, "text": text});
+    editor.tell("textDocument/didOpen", json!({"textDocument": document}));
+    let symbols = editor.ask("textDocument/documentSymbol", json!({"textDocument": {"uri": URI}})).unwrap();
+    assert_eq!(symbols[0]["selectionRange"]["start"]["character"], 37);
+}
+
+#[test]
+fn of_many_changes_the_last_text_counts_and_old_requests_can_be_withdrawn() {
+    let mut editor = Editor::open(MISSION);
+    for version in 2..200 {
+        editor.tell("textDocument/didChange", change(version, (0, 2), (0, 2), "x"));
+    }
+    assert_eq!(codes(&editor.diagnostics(199)), ["K0601"]);
+    // In one piece, so that both are there when the first is looked at.
+    let hover =
+        json!({"jsonrpc": "2.0", "id": 77, "method": "textDocument/hover", "params": at(5, 6)}).to_string();
+    let cancel = json!({"jsonrpc": "2.0", "method": "$/cancelRequest", "params": {"id": 77}}).to_string();
+    let frame = |body: &str| format!("Content-Length: {}\r\n\r\n{body}", body.len());
+    editor.input.as_mut().unwrap().write_all((frame(&hover) + &frame(&cancel)).as_bytes()).unwrap();
+    let answer = loop {
+        let message = editor.hear().unwrap();
+        if message["id"] == 77 {
+            break message;
+        }
+    };
+    // It was withdrawn, or had been answered before.
+    assert!(answer["error"]["code"] == -32800 || answer["result"]["contents"].is_object(), "{answer}");
 }
 
 #[test]

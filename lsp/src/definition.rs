@@ -28,8 +28,12 @@ pub(crate) fn of(analysis: &Analysis, symbol: &Symbol, wanted: impl Fn(bool) -> 
 /// A name without what stands before it: a package, `#:`, a quotation mark.
 pub(crate) fn bare(analysis: &Analysis, span: Span) -> Span {
     let text = analysis.source.slice(span);
-    let inner = text.trim_matches('"');
-    let end = span.end - if text.len() > 1 && text.ends_with('"') { 1 } else { 0 };
-    let name = inner.rsplit([':', '#']).next().unwrap_or(inner);
-    Span { start: end - name.len() as u32, end, ..span }
+    let (inner, end) = match text.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')) {
+        Some(inner) => (inner, span.end - 1),
+        None => (text, span.end),
+    };
+    match inner.rsplit(':').next() {
+        Some(name) if !name.is_empty() => Span { start: end - name.len() as u32, end, ..span },
+        _ => span,
+    }
 }

@@ -3,11 +3,15 @@
 use kirk_compiler::ast::{Amount, AmountKind, ControlProgram, DurationOf};
 use kirk_compiler::episode::Kind;
 use kirk_compiler::{Source, Span, Symbol, SymbolKind};
+use kirk_network::news::{Treatment, treatments};
 use kirk_network::windows::Window;
 
 use crate::analysis::Analysis;
+use crate::cursor::cursor;
 use crate::mission::{Mission, Occurrence};
 use crate::view::View;
+use crate::vocabulary::{keywords, word};
+use crate::waits::{Waits, in_words, waits};
 
 /// What to show, in Markdown, and what it is about.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -24,7 +28,7 @@ const MOST_OCCURRENCES: usize = 5;
 /// What there is to know about what stands at an offset.
 pub fn hover(view: &View, offset: u32) -> Option<Hover> {
     let analysis = &*view.analysis;
-    let (symbol, place) = analysis.symbols.at(0, offset)?;
+    let Some((symbol, place)) = analysis.symbols.at(0, offset) else { return word_at(view, offset) };
     let mut parts = vec![what(analysis, symbol)];
     if let SymbolKind::Program(_) = symbol.kind {
         let form = if place.definition { place.span } else { call_around(analysis, place.span) };
@@ -32,6 +36,25 @@ pub fn hover(view: &View, offset: u32) -> Option<Hover> {
     }
     parts.retain(|part| !part.is_empty());
     Some(Hover { span: place.span, markdown: parts.join("\n\n") })
+}
+
+/// What there is to know about a word of the language, and when its form happens.
+fn word_at(view: &View, offset: u32) -> Option<Hover> {
+    let analysis = &*view.analysis;
+    let cursor = cursor(analysis.text(), offset)?;
+    let written = analysis.source.slice(cursor.word);
+    let Some(word) = word(written).filter(|_| cursor.first) else {
+        let name = written.strip_prefix(':')?.to_lowercase();
+        let (_, about) = keywords(&cursor.head(0)).iter().find(|(known, _)| *known == name)?;
+        return Some(Hover { span: cursor.word, markdown: (*about).to_string() });
+    };
+    let mut markdown = format!("```lisp\n{}\n```\n\n{}", word.shape, word.about);
+    // A `delay` is known by its form, the others by their word.
+    let form = if word.name == "delay" { call_around(analysis, cursor.word) } else { cursor.word };
+    if let Some(times) = occurrences(view, form) {
+        markdown.push_str(&format!("\n\n{times}"));
+    }
+    Some(Hover { span: cursor.word, markdown })
 }
 
 /// What a symbol is.
@@ -84,16 +107,15 @@ fn takes(source: &Source, duration: &DurationOf) -> String {
     let range = |lower: &Option<Amount>, upper: &Option<Amount>| match (lower, upper) {
         (lower, None) => format!("at least {}", shown(lower, "0 s")),
         (None, Some(upper)) => format!("at most {}", amount(source, upper)),
-        (Some(lower), Some(upper)) => format!("{} to {}", amount(source, lower), amount(source, upper)),
+        (Some(lower), Some(upper)) => match (&lower.kind, &upper.kind) {
+            (AmountKind::Number(least), AmountKind::Number(most)) => format!("{least} to {most} s"),
+            _ => format!("{} to {}", amount(source, lower), amount(source, upper)),
+        },
     };
     let who = if duration.contingent { "Nature decides" } else { "as we choose" };
     let mut text = format!("takes {}, {who}", range(&duration.bounds.lower, &duration.bounds.upper));
     if let Some(delay) = &duration.delay {
-        text.push_str(&format!(
-            "; the news of its end comes {} to {} later",
-            shown(&delay.lower, "0 s"),
-            shown(&delay.upper, "0 s")
-        ));
+        text.push_str(&format!("; the news of its end comes {} later", range(&delay.lower, &delay.upper)));
     }
     text
 }
@@ -123,26 +145,57 @@ fn call_around(analysis: &Analysis, name: Span) -> Span {
     around
 }
 
-/// When what stands at a place happens.
+/// When what stands at a place happens, in each mission it belongs to.
 fn occurrences(view: &View, form: Span) -> Option<String> {
     let all = view.occurrences(form);
-    let mut lines: Vec<String> = all
-        .iter()
-        .filter(|(_, occurrence)| matches!(occurrence.kind, Kind::Primitive | Kind::Program))
-        .take(MOST_OCCURRENCES)
-        .filter_map(|(mission, occurrence)| times(mission, occurrence))
-        .collect();
-    if all.len() > lines.len() && !lines.is_empty() {
-        lines.push(format!("- and {} more", all.len() - lines.len()));
+    let mut lines: Vec<String> = Vec::new();
+    let mut last: Option<&Mission> = None;
+    for (mission, occurrence) in all.iter().take(MOST_OCCURRENCES) {
+        let Some(times) = times(mission, occurrence, all.len() == 1) else { continue };
+        if !last.is_some_and(|last| std::ptr::eq(last, *mission)) {
+            lines.push(format!("From the start of `{}`:\n", mission.program));
+            last = Some(mission);
+        }
+        lines.push(times);
+    }
+    if all.len() > MOST_OCCURRENCES && !lines.is_empty() {
+        lines.push(format!("- and {} more", all.len() - MOST_OCCURRENCES));
     }
     (!lines.is_empty()).then(|| lines.join("\n"))
 }
 
-fn times(mission: &Mission, occurrence: &Occurrence) -> Option<String> {
+/// When an occurrence happens; in detail also what it waits for and what becomes of the news of its end.
+fn times(mission: &Mission, occurrence: &Occurrence, detailed: bool) -> Option<String> {
+    let network = &mission.plan.network;
     let (start, end) = (mission.window(occurrence.start)?, mission.window(occurrence.end)?);
-    let mut text = format!("- `{}` starts {} and ends {}", occurrence.name, when(start), when(end));
+    let name = match occurrence.kind {
+        Kind::Primitive | Kind::Program => format!("`{}`", occurrence.name),
+        kind => format!("this `{}`", kind.word()),
+    };
+    let mut text = format!("- {name} starts {} and ends {}", when(start), when(end));
     if let Some(slack) = slack(start) {
-        text.push_str(&format!("; slack {slack}"));
+        text.push_str(&format!("; its start can shift {slack}"));
+    }
+    if !detailed {
+        return Some(text);
+    }
+    let Waits { together, after } = waits(network, occurrence.start);
+    let listed = |events: &[String]| {
+        let shown: Vec<String> = events.iter().take(MOST_OCCURRENCES).map(|event| in_words(event)).collect();
+        let more = events.len() - shown.len();
+        let rest = if more > 0 { format!(" and {more} more") } else { String::new() };
+        format!("{}{rest}", shown.join(", "))
+    };
+    if !together.is_empty() {
+        text.push_str(&format!("\n- its start is one moment with {}", listed(&together)));
+    }
+    if !after.is_empty() {
+        text.push_str(&format!("\n- it waits for {}", listed(&after)));
+    }
+    if let Some(link) = network.link_of(occurrence.end)
+        && let Some(Treatment { heard, how, .. }) = treatments(network).get(link)
+    {
+        text.push_str(&format!("\n- its end is {heard}; {how}"));
     }
     Some(text)
 }
@@ -160,7 +213,7 @@ pub(crate) fn when(window: Window) -> String {
 fn slack(start: Window) -> Option<String> {
     match start.latest {
         Some(latest) if latest == start.earliest => None,
-        Some(latest) => latest.checked_since(start.earliest).map(|slack| format!("{slack} s")),
+        Some(latest) => latest.checked_since(start.earliest).map(|slack| format!("by {slack} s")),
         None => Some("without limit".to_string()),
     }
 }

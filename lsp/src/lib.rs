@@ -15,23 +15,44 @@
 //!
 //! Files: a document is judged by itself, as in `kirk check`.
 
+mod actions;
 mod analysis;
+mod completion;
 mod convert;
+mod cursor;
 mod definition;
 mod document;
 mod feedback;
+mod folding;
+mod highlight;
+mod hints;
 mod hover;
+mod layout;
 mod lines;
 mod mission;
+mod outline;
+mod rename;
 mod requests;
 mod server;
+mod signature;
 mod transport;
 mod view;
+mod vocabulary;
+mod waits;
 
+pub use actions::{Action, actions};
 pub use analysis::{Analysis, Unjudged, analyse};
+pub use completion::{Completion, CompletionKind, completion, filled_in};
 pub use definition::{definition, references};
+pub use folding::{Fold, folding};
+pub use highlight::{Highlight, HighlightKind, highlight};
+pub use hints::{Hint, Lens, hints, lenses};
 pub use hover::{Hover, hover};
+pub use layout::layout;
 pub use lines::{Encoding, Lines};
 pub use mission::{Judgement, Mission, Occurrence, judge};
+pub use outline::{Outline, OutlineKind, outline};
+pub use rename::{edited, prepare_rename, rename};
 pub use server::serve;
+pub use signature::{Signature, signature};
 pub use view::{Shift, View};

@@ -344,3 +344,35 @@ fn cancelled(events: &[Event]) -> HashSet<RequestId> {
     };
     events.iter().filter_map(id).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn a_request_withdrawn_before_it_is_looked_at_is_not_answered() {
+        let notification = |method: &str, params| {
+            let notification = Notification { method: method.to_string(), params };
+            Event::Incoming(Incoming::Message(Message::Notification(notification)))
+        };
+        let events = [
+            notification("$/cancelRequest", json!({"id": 7})),
+            notification("$/cancelRequest", json!({"id": "seven"})),
+            notification("$/cancelRequest", json!({"nothing": 8})),
+            notification("exit", json!({"id": 9})),
+        ];
+        let withdrawn = cancelled(&events);
+        assert_eq!(withdrawn, HashSet::from([RequestId::from(7), RequestId::from("seven".to_string())]));
+        let (outbox, outgoing) = channel();
+        let (jobs, _waiting) = channel();
+        let mut server = Server { state: State::Open, ..Server::new(outbox, jobs) };
+        let params = json!({"textDocument": {"uri": "file:///x"}, "position": {"line": 0, "character": 0}});
+        server
+            .request(Request { id: 7.into(), method: "textDocument/hover".to_string(), params }, &withdrawn);
+        let Ok(Outgoing::Message(Message::Response(answer))) = outgoing.try_recv() else {
+            panic!("no answer")
+        };
+        assert_eq!(answer.response_result.unwrap_err().code, ErrorCode::RequestCanceled as i32);
+    }
+}

@@ -32,7 +32,8 @@
 //! | compile | [`mod@dispatchable`] | plain STNU | [`Dispatchable`] |
 //!
 //! [`mod@punctual`] finds the events of a controllable network that can never be executed late.
-//! [`mod@windows`] says between which times each event can happen at all.
+//! [`mod@windows`] says between which times each event can happen at all, [`news`] what becomes of late news.
+//!
 //! [`json`], [`graphml`], [`plain`], [`dot`] and [`text`] are the formats, [`generate`] makes networks to measure with.
 //!
 //! # Words
@@ -64,6 +65,7 @@ pub mod graphml;
 pub mod json;
 pub mod merge;
 pub mod model;
+pub mod news;
 pub mod places;
 pub mod plain;
 pub mod punctual;

@@ -242,19 +242,21 @@ fn add_slack(analysis: &Analysis, operator: Span) -> Option<Fix> {
     Some((format!("Give the `{word}` slack: `(:slack t)`"), vec![edit]))
 }
 
-/// Slack for the form around a call.
+/// Slack for the sequence that a call is a part of.
 fn slack_around(analysis: &Analysis, call: Span) -> Option<Fix> {
-    let mut around = None;
+    let mut operator = None;
     let mut forms = &analysis.forms[..];
     while let Some(form) = forms.iter().find(|it| it.span.start <= call.start && call.end <= it.span.end) {
         if form.span == call {
             break;
         }
-        around = Some(form);
         forms = form.list().unwrap_or_default();
+        // These are no forms of their own: what is in them belongs to the form around.
+        if !matches!(form.call(), Some(("label" | "let" | "let*" | "dotimes", _))) {
+            operator = forms.first();
+        }
     }
-    let operator = around?.list()?.first()?.span;
-    add_slack(analysis, operator)
+    add_slack(analysis, operator?.span)
 }
 
 /// The innermost list around an offset.

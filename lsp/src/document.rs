@@ -15,8 +15,6 @@ use crate::view::{Shift, View};
 pub(crate) struct Document {
     pub(crate) uri: Uri,
     pub(crate) version: i32,
-    /// Counts its texts, so that a verdict on an earlier one is known as such.
-    pub(crate) generation: u64,
     text: String,
     analysis: Option<Arc<Analysis>>,
     /// What is left to be judged of the analysis.
@@ -31,7 +29,6 @@ pub(crate) struct Document {
 
 #[derive(Debug)]
 struct Judged {
-    generation: u64,
     text: String,
     missions: Arc<Vec<Mission>>,
     diagnostics: Vec<Diagnostic>,
@@ -42,7 +39,6 @@ impl Document {
         Document {
             uri,
             version,
-            generation: 0,
             text,
             analysis: None,
             unjudged: None,
@@ -71,7 +67,6 @@ impl Document {
             }
         }
         self.version = version;
-        self.generation += 1;
         self.analysis = None;
         self.unjudged = None;
         self.handed_on = false;
@@ -96,22 +91,22 @@ impl Document {
         self.unjudged.take().filter(|unjudged| !unjudged.roots.is_empty())
     }
 
-    /// Keeps what came of judging the text of a generation; false if there is a newer text.
+    /// Keeps what came of judging a text; false if there is a newer one.
     pub(crate) fn keep(
         &mut self,
-        generation: u64,
         text: String,
         missions: Vec<Mission>,
         diagnostics: Vec<Diagnostic>,
     ) -> bool {
-        self.judged = Some(Judged { generation, text, missions: Arc::new(missions), diagnostics });
-        generation == self.generation
+        let is_newest = text == self.text;
+        self.judged = Some(Judged { text, missions: Arc::new(missions), diagnostics });
+        is_newest
     }
 
     /// What there is to say about the newest text as far as it is known, sorted by place.
     pub(crate) fn diagnostics(&mut self) -> Vec<Diagnostic> {
         let mut all = self.analysis().diagnostics.clone();
-        if let Some(judged) = self.judged.as_ref().filter(|judged| judged.generation == self.generation) {
+        if let Some(judged) = self.judged.as_ref().filter(|judged| judged.text == self.text) {
             all.extend(judged.diagnostics.iter().cloned());
             all.sort_by_key(|d| (d.span, d.severity, d.code));
         }

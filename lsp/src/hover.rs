@@ -1,6 +1,6 @@
 //! What there is to know about the name under the cursor: what it is, how long it takes, when it happens.
 
-use kirk_compiler::ast::{Amount, AmountKind, ControlProgram, DurationOf};
+use kirk_compiler::ast::{Amount, AmountKind, Body, ControlProgram, DurationOf};
 use kirk_compiler::episode::Kind;
 use kirk_compiler::{Source, Span, Symbol, SymbolKind};
 use kirk_network::news::{Treatment, treatments};
@@ -30,9 +30,13 @@ pub fn hover(view: &View, offset: u32) -> Option<Hover> {
     let analysis = &*view.analysis;
     let Some((symbol, place)) = analysis.symbols.at(0, offset) else { return word_at(view, offset) };
     let mut parts = vec![what(analysis, symbol)];
-    if let SymbolKind::Program(_) = symbol.kind {
-        let form = if place.definition { place.span } else { call_around(analysis, place.span) };
-        parts.extend(occurrences(view, form));
+    match symbol.kind {
+        SymbolKind::Program(_) if place.definition => parts.extend(occurrences(view, place.span)),
+        SymbolKind::Program(_) => parts.extend(occurrences(view, call_around(analysis, place.span))),
+        SymbolKind::Label => {
+            parts.extend(labelled(analysis, symbol).and_then(|form| occurrences(view, form)))
+        }
+        _ => {}
     }
     parts.retain(|part| !part.is_empty());
     Some(Hover { span: place.span, markdown: parts.join("\n\n") })
@@ -129,6 +133,25 @@ fn amount(source: &Source, amount: &Amount) -> String {
     }
 }
 
+/// What a label names, if it is given in one place to one call.
+fn labelled(analysis: &Analysis, symbol: &Symbol) -> Option<Span> {
+    let mut given = symbol.places.iter().filter(|place| place.definition);
+    let (Some(only), None) = (given.next(), given.next()) else { return None };
+    let mut open: Vec<&Body> = analysis.program.programs.iter().flat_map(|program| &program.body).collect();
+    while let Some(body) = open.pop() {
+        match body {
+            Body::Label(labelled) if labelled.name.span == only.span => {
+                return match labelled.body.as_slice() {
+                    [one] => Some(one.span()),
+                    _ => None,
+                };
+            }
+            _ => open.extend(body.parts()),
+        }
+    }
+    None
+}
+
 /// The form whose first word is the name at `name`: the call.
 fn call_around(analysis: &Analysis, name: Span) -> Span {
     let mut around = name;
@@ -173,27 +196,33 @@ fn times(mission: &Mission, occurrence: &Occurrence, detailed: bool) -> Option<S
         kind => format!("this `{}`", kind.word()),
     };
     let mut text = format!("- {name} starts {} and ends {}", when(start), when(end));
-    if let Some(slack) = slack(start) {
-        text.push_str(&format!("; its start can shift {slack}"));
+    let Waits { together, after, link } = waits(network, occurrence.start);
+    match (link, slack(start)) {
+        (Some(_), _) => text.push_str("; Nature decides when it starts"),
+        (None, Some(slack)) => text.push_str(&format!("; its start can shift {slack}")),
+        (None, None) => {}
     }
     if !detailed {
         return Some(text);
     }
-    let Waits { together, after } = waits(network, occurrence.start);
     let listed = |events: &[String]| {
         let shown: Vec<String> = events.iter().take(MOST_OCCURRENCES).map(|event| in_words(event)).collect();
         let more = events.len() - shown.len();
         let rest = if more > 0 { format!(" and {more} more") } else { String::new() };
         format!("{}{rest}", shown.join(", "))
     };
+    let news = treatments(network);
     if !together.is_empty() {
         text.push_str(&format!("\n- its start is one moment with {}", listed(&together)));
+        if let Some(Treatment { heard, .. }) = link.and_then(|link| news.get(link)) {
+            text.push_str(&format!(", {heard}"));
+        }
     }
     if !after.is_empty() {
         text.push_str(&format!("\n- it waits for {}", listed(&after)));
     }
-    if let Some(link) = network.link_of(occurrence.end)
-        && let Some(Treatment { heard, how, .. }) = treatments(network).get(link)
+    if let Some(Treatment { heard, how, .. }) =
+        network.link_of(occurrence.end).and_then(|link| news.get(link))
     {
         text.push_str(&format!("\n- its end is {heard}; {how}"));
     }

@@ -38,7 +38,6 @@ enum Event {
 /// A text to judge.
 struct Job {
     uri: String,
-    generation: u64,
     text: String,
     unjudged: Unjudged,
 }
@@ -46,7 +45,6 @@ struct Job {
 /// What came of it.
 struct Verdicts {
     uri: String,
-    generation: u64,
     text: String,
     missions: Vec<Mission>,
     diagnostics: Vec<Diagnostic>,
@@ -88,10 +86,10 @@ fn judge_all(waiting: &Receiver<Job>, events: &Sender<Event>) {
         for job in waiting.try_iter() {
             newest.insert(job.uri.clone(), job);
         }
-        for (uri, Job { generation, text, unjudged, .. }) in newest {
+        for (uri, Job { text, unjudged, .. }) in newest {
             let judged = catch_unwind(AssertUnwindSafe(|| judge(unjudged)));
             let (missions, diagnostics) = judged.unwrap_or_default();
-            let verdicts = Verdicts { uri, generation, text, missions, diagnostics };
+            let verdicts = Verdicts { uri, text, missions, diagnostics };
             if events.send(Event::Judged(verdicts)).is_err() {
                 return;
             }
@@ -274,8 +272,7 @@ impl Server {
             match document.take_unjudged() {
                 Some(unjudged) => {
                     let text = document.analysis().text().to_string();
-                    let generation = document.generation;
-                    let _ = self.jobs.send(Job { uri: uri.clone(), generation, text, unjudged });
+                    let _ = self.jobs.send(Job { uri: uri.clone(), text, unjudged });
                 }
                 None => settled.push(uri.clone()),
             }
@@ -284,10 +281,10 @@ impl Server {
     }
 
     fn judged(&mut self, verdicts: Verdicts) {
-        let Verdicts { uri, generation, text, missions, diagnostics } = verdicts;
+        let Verdicts { uri, text, missions, diagnostics } = verdicts;
         // Closed meanwhile.
         let Some(document) = self.documents.get_mut(&uri) else { return };
-        if document.keep(generation, text, missions, diagnostics) {
+        if document.keep(text, missions, diagnostics) {
             self.publish(&uri);
             for method in self.client.refreshes() {
                 self.asked += 1;

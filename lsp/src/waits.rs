@@ -12,6 +12,8 @@ pub(crate) struct Waits {
     pub(crate) together: Vec<String>,
     /// The events it comes after.
     pub(crate) after: Vec<String>,
+    /// The contingent link that decides when it happens, if one does.
+    pub(crate) link: Option<usize>,
 }
 
 /// Looks back from an event to the nearest ones that a user wrote.
@@ -23,7 +25,7 @@ pub(crate) fn waits(network: &Network, event: EventId) -> Waits {
         written.map(|name| name.text.clone()).collect()
     };
     let here = merged.event_of[event.index()];
-    let mut waits = Waits { together: names(here), after: Vec::new() };
+    let mut waits = Waits { together: names(here), after: Vec::new(), link: merged.network.link_of(here) };
     waits.together.retain(|name| !own(name));
     let mut before: Vec<Vec<EventId>> = vec![Vec::new(); merged.network.events().len()];
     for requirement in merged.network.requirements() {

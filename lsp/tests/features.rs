@@ -425,6 +425,29 @@ fn actions_settle_a_conflict() {
 }
 
 #[test]
+fn a_start_that_nobody_knows_of_can_be_given_slack() {
+    let text = "(define-control-program listen ()
+  (declare (primitive) (duration (simple :lower-bound 15 :upper-bound 40 :max-observation-delay 5) :contingent t)))
+(define-control-program act () (declare (primitive) (duration (simple :upper-bound 30))))
+(define-control-program main ()
+  (sequence (:slack nil)
+    (listen)
+    (label last (act))))
+";
+    shows!("actions_on_a_start_at_a_late_end", text, acted(text));
+    insta::assert_snapshot!("label", hover_at(&marked(text, "label la^st")));
+    insta::assert_snapshot!("start_at_a_late_end", hover_at(&marked(text, "(a^ct))))")));
+}
+
+#[test]
+fn a_new_document_is_no_error() {
+    for text in ["", "; soon\n"] {
+        let told: Vec<_> = problems(text).iter().map(|it| (it.code.to_string(), it.severity)).collect();
+        assert_eq!(told, [("K0109".to_string(), Severity::Note)]);
+    }
+}
+
+#[test]
 fn formatting_is_that_of_kirk_fmt_and_keeps_the_ends_of_lines() {
     let text = "(define-control-program main ()\n(sequence ()\n(a)))\n; end\n";
     let laid_out = |text: &str| {

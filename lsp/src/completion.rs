@@ -123,7 +123,7 @@ fn wanted(cursor: &Cursor<'_>) -> Vec<Wanted> {
         "" | ":slack" if matches!(cursor.head(1).as_str(), "sequence" | "parallel") => {
             vec![Wanted::Keyword("sequence")]
         }
-        _ if in_slots(cursor) => vec![Wanted::Keyword("slot")],
+        _ if cursor.is_in_slot() => vec![Wanted::Keyword("slot")],
         _ => match word(&head).map(|word| word.position) {
             Some(Position::Body | Position::Definition) => vec![Wanted::Form(Position::Body)],
             // The argument of a call, or of a calculation.
@@ -162,11 +162,6 @@ fn first(cursor: &Cursor<'_>) -> Vec<Wanted> {
             _ => vec![Wanted::Form(Position::Number)],
         },
     }
-}
-
-/// True in `(defclass name (super...) ((slot here`.
-fn in_slots(cursor: &Cursor<'_>) -> bool {
-    cursor.open.len() == 3 && cursor.head(1).is_empty() && cursor.head(2) == "defclass"
 }
 
 struct Offer<'a> {

@@ -91,6 +91,22 @@ impl Cursor<'_> {
         }
     }
 
+    /// The form whose keyword would stand here, as [`crate::vocabulary::keywords`] calls it.
+    pub(crate) fn keyword_of(&self) -> String {
+        let head = self.head(0);
+        // `(:slack t)` is a list of its own in the form it belongs to.
+        match head.is_empty() || head.starts_with(':') {
+            true => self.head(1),
+            false if self.is_in_slot() => "slot".to_string(),
+            false => head,
+        }
+    }
+
+    /// True in `(defclass name (super...) ((slot here`.
+    pub(crate) fn is_in_slot(&self) -> bool {
+        self.open.len() == 3 && self.head(1).is_empty() && self.head(2) == "defclass"
+    }
+
     /// The head of the form so many levels out, in lower case and without a package; empty if there is none.
     pub(crate) fn head(&self, level: usize) -> String {
         let open = self.open.len().checked_sub(level + 1).map(|index| &self.open[index]);

@@ -19,19 +19,14 @@ pub(crate) struct Document {
     analysis: Option<Arc<Analysis>>,
     /// What is left to be judged of the analysis.
     unjudged: Option<Unjudged>,
-    /// The last text that could be judged, and what came of it.
-    judged: Option<Judged>,
+    /// The last text that was judged, and what there is to say about it.
+    told: Option<(String, Vec<Diagnostic>)>,
+    /// The last text in which there were missions, and these.
+    known: Option<(String, Arc<Vec<Mission>>)>,
     /// True if the newest text has been handed on, to be judged or to the client.
     pub(crate) handed_on: bool,
     /// True if the client has been told of it.
     pub(crate) settled: bool,
-}
-
-#[derive(Debug)]
-struct Judged {
-    text: String,
-    missions: Arc<Vec<Mission>>,
-    diagnostics: Vec<Diagnostic>,
 }
 
 impl Document {
@@ -42,7 +37,8 @@ impl Document {
             text,
             analysis: None,
             unjudged: None,
-            judged: None,
+            told: None,
+            known: None,
             handed_on: false,
             settled: false,
         }
@@ -99,15 +95,18 @@ impl Document {
         diagnostics: Vec<Diagnostic>,
     ) -> bool {
         let is_newest = text == self.text;
-        self.judged = Some(Judged { text, missions: Arc::new(missions), diagnostics });
+        if !missions.is_empty() {
+            self.known = Some((text.clone(), Arc::new(missions)));
+        }
+        self.told = Some((text, diagnostics));
         is_newest
     }
 
     /// What there is to say about the newest text as far as it is known, sorted by place.
     pub(crate) fn diagnostics(&mut self) -> Vec<Diagnostic> {
         let mut all = self.analysis().diagnostics.clone();
-        if let Some(judged) = self.judged.as_ref().filter(|judged| judged.text == self.text) {
-            all.extend(judged.diagnostics.iter().cloned());
+        if let Some((_, more)) = self.told.as_ref().filter(|(text, _)| *text == self.text) {
+            all.extend(more.iter().cloned());
             all.sort_by_key(|d| (d.span, d.severity, d.code));
         }
         all
@@ -116,8 +115,8 @@ impl Document {
     /// The newest text with the last missions known.
     pub(crate) fn view(&mut self) -> View {
         let analysis = self.analysis();
-        let (missions, shift) = match &self.judged {
-            Some(judged) => (judged.missions.clone(), Shift::new(&judged.text, analysis.text())),
+        let (missions, shift) = match &self.known {
+            Some((text, missions)) => (missions.clone(), Shift::new(text, analysis.text())),
             None => (Arc::default(), Shift::default()),
         };
         View { analysis, missions, shift }

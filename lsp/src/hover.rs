@@ -49,7 +49,7 @@ fn word_at(view: &View, offset: u32) -> Option<Hover> {
     let written = analysis.source.slice(cursor.word);
     let Some(word) = word(written).filter(|_| cursor.first) else {
         let name = written.strip_prefix(':')?.to_lowercase();
-        let (_, about) = keywords(&cursor.head(0)).iter().find(|(known, _)| *known == name)?;
+        let (_, about) = keywords(&cursor.keyword_of()).iter().find(|(known, _)| *known == name)?;
         return Some(Hover { span: cursor.word, markdown: (*about).to_string() });
     };
     let mut markdown = format!("```lisp\n{}\n```\n\n{}", word.shape, word.about);

@@ -37,6 +37,7 @@ fn hover_says_what_a_program_is_and_when_it_happens() {
         ("program sc^an", "definition"),
         ("(seq^uence", "operator"),
         (":upper-bou^nd *limit*", "keyword"),
+        ("(:sla^ck t)", "keyword_in_a_list"),
         ("*lim^it*", "named_number"),
         ("upper-bound le^ngth", "parameter"),
     ] {

@@ -14,9 +14,13 @@ use crate::vocabulary::word;
 pub fn prepare_rename(analysis: &Analysis, offset: u32) -> Result<Span, String> {
     let Some((symbol, place)) = analysis.symbols.at(0, offset) else {
         let written = cursor(analysis.text(), offset).map_or("", |cursor| analysis.source.slice(cursor.word));
-        return Err(match (written, word(written)) {
-            ("", _) => "There is no name here.".to_string(),
-            (_, Some(_)) => format!("`{written}` is a word of the language."),
+        let is_number = matches!(tokens(written).as_slice(), [one] if one.kind == Kind::Number);
+        return Err(match written {
+            "" => "There is no name here.".to_string(),
+            _ if is_number => format!("{written} is a number, and no name."),
+            _ if word(written).is_some() || written.starts_with(':') => {
+                format!("`{written}` is a word of the language.")
+            }
             _ => format!("Nothing kirk knows is called `{written}`."),
         });
     };

@@ -162,6 +162,8 @@ fn renaming_is_refused_with_a_reason() {
         of("bound (* n^", "*limit*"),
         of("#:too^ls) (:import", "x"),
         of("\n^", "x"),
+        of("(dotimes (n 3^)", "x"),
+        of("(:sla^ck t)", "x"),
         renamed("(define-control-program a () (wh^at))", "x"),
         renamed(
             "(define-control-program a^ () (b)) (define-control-program b () (declare (primitive)))",

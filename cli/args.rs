@@ -57,6 +57,8 @@ pub(crate) enum Command {
     Generate(Generate),
     /// Lays out RMPL files: indentation, line breaks and blanks.
     Fmt(Fmt),
+    /// Serves an editor: the Language Server Protocol on standard input and output.
+    Lsp(Lsp),
     /// Explains a diagnostic code, such as K0203, or lists all codes.
     Explain(Explain),
 }
@@ -453,6 +455,13 @@ pub(crate) struct Fmt {
     /// Change nothing; print the names of the files that would change, and exit with 1 if there are any.
     #[arg(long)]
     pub(crate) check: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Lsp {
+    /// Speak on standard input and output, as is always done: editors like to say so.
+    #[arg(long)]
+    stdio: bool,
 }
 
 #[derive(Debug, Args)]

@@ -12,6 +12,7 @@ mod fmt;
 mod generate;
 mod input;
 mod json;
+mod lsp;
 mod news;
 mod output;
 mod replay;
@@ -51,6 +52,7 @@ fn execute(arguments: &Arguments) -> Status {
         Command::Verify(verify) => verify::verify(verify, &arguments.common),
         Command::Generate(generate) => generate::generate(generate, &arguments.common),
         Command::Fmt(fmt) => fmt::fmt(fmt, &arguments.common),
+        Command::Lsp(_) => Ok(lsp::lsp()),
         Command::Explain(explain) => explain::explain(explain),
     };
     match result {

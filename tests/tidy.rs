@@ -22,6 +22,7 @@ fn the_crates_know_only_whom_they_may_know() {
     assert_eq!(ours("compiler/Cargo.toml"), ["kirk-network"]);
     assert_eq!(ours("runtime/Cargo.toml"), ["kirk-network"]);
     assert_eq!(ours("executive/Cargo.toml"), ["kirk-network", "kirk-runtime"]);
+    assert_eq!(ours("lsp/Cargo.toml"), ["kirk-compiler", "kirk-network"]);
 }
 
 #[test]
@@ -30,12 +31,14 @@ fn what_belongs_in_one_place_is_named_in_one_place() {
         ("pest", "compiler"),
         ("lexpr", "compiler"),
         ("petgraph", "network"),
+        ("lsp-server", "lsp"),
+        ("lsp-types", "lsp"),
         ("clap", "."),
         ("codespan-reporting", "."),
         ("hyper", "executive"),
         ("subtle", "executive"),
     ] {
-        for folder in [".", "compiler", "executive", "network", "runtime"] {
+        for folder in [".", "compiler", "executive", "lsp", "network", "runtime"] {
             let named =
                 dependencies(&format!("{folder}/Cargo.toml")).iter().any(|dependency| dependency == name);
             assert_eq!(named, folder == owner, "{name} in {folder}");
@@ -46,7 +49,7 @@ fn what_belongs_in_one_place_is_named_in_one_place() {
 #[test]
 fn every_source_file_says_what_it_is_and_has_nothing_unfinished() {
     let mut files = Vec::new();
-    for folder in ["cli", "compiler", "executive", "network", "runtime", "tests"] {
+    for folder in ["cli", "compiler", "executive", "lsp", "network", "runtime", "tests"] {
         rust_files(Path::new(folder), &mut files);
     }
     assert!(files.len() > 80, "only {} files", files.len());

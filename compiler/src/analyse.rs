@@ -6,6 +6,7 @@ mod calls;
 mod classes;
 mod expression;
 mod names;
+pub mod symbols;
 
 use std::collections::BTreeSet;
 

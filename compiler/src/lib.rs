@@ -84,6 +84,7 @@ pub mod sexpr;
 pub mod source;
 pub mod typed;
 
+pub use analyse::symbols::{Place, Symbol, SymbolKind, Symbols, symbols};
 pub use code::{Code, explain};
 pub use diagnostic::{Diagnostic, Label, Severity};
 pub use explain::explain_conflict;

@@ -85,7 +85,7 @@ struct Lowering {
 }
 
 /// The start and the end of an episode.
-pub(crate) type Ends = (EventId, EventId);
+pub type Ends = (EventId, EventId);
 
 impl Lowering {
     /// Adds an episode with all its parts; returns its start and its end. Events are numbered in the order in which they
@@ -237,7 +237,7 @@ impl Lowering {
 }
 
 /// All episodes with their events, in source order, each before its parts.
-pub(crate) fn events_of(root: &Episode) -> Vec<(&Episode, Ends)> {
+pub fn events_of(root: &Episode) -> Vec<(&Episode, Ends)> {
     let mut found: Vec<(&Episode, Ends)> = Vec::new();
     let mut next = 0;
     let mut number = || {

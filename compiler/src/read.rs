@@ -5,7 +5,7 @@
 //! form is open means that the earlier form was never closed.
 
 pub(crate) mod foreign;
-pub(crate) mod token;
+mod token;
 
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
@@ -13,7 +13,9 @@ use crate::form::{Form, FormKind, Symbol, clip};
 use crate::problem::Problems;
 use crate::source::{Source, Span};
 use foreign::{begins_definition, foreign_line, foreign_text, foreign_token};
-use token::{Kind, Token, Tokens};
+pub(crate) use token::Tokens;
+
+pub use token::{Kind, Token, tokens};
 
 /// How deep forms may be nested.
 pub const MAX_NESTING: usize = 1_000;

@@ -32,6 +32,8 @@
 //! | compile | [`mod@dispatchable`] | plain STNU | [`Dispatchable`] |
 //!
 //! [`mod@punctual`] finds the events of a controllable network that can never be executed late.
+//! [`mod@windows`] says between which times each event can happen at all, [`news`] what becomes of late news.
+//!
 //! [`json`], [`graphml`], [`plain`], [`dot`] and [`text`] are the formats, [`generate`] makes networks to measure with.
 //!
 //! # Words
@@ -63,6 +65,7 @@ pub mod graphml;
 pub mod json;
 pub mod merge;
 pub mod model;
+pub mod news;
 pub mod places;
 pub mod plain;
 pub mod punctual;
@@ -73,6 +76,7 @@ pub mod stnu;
 pub mod text;
 pub mod time;
 mod trees;
+pub mod windows;
 
 pub use check::{Verdict, check};
 pub use conflict::{Conflict, Part, Share};

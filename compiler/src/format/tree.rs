@@ -1,6 +1,6 @@
 //! A text as a tree that keeps its comments and blank lines. Expects a text that can be read without an error.
 
-use crate::read::token::{Kind, Tokens};
+use crate::read::{Kind, Tokens};
 
 /// A form, or a comment.
 #[derive(Debug)]

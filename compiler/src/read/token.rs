@@ -9,27 +9,48 @@ struct Grammar;
 
 /// What a token is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub enum Kind {
+    /// The end of the text.
     End,
+    /// `(`.
     Open,
+    /// `)`.
     Close,
+    /// `'`.
     Quote,
+    /// `"..."`.
     String,
+    /// `"...`, to the end of the text.
     UnclosedString,
+    /// `#:name`.
     Uninterned,
+    /// A number.
     Number,
+    /// `:name`.
     Keyword,
+    /// A name.
     Symbol,
+    /// What has no meaning.
     Unreadable,
+    /// `#| ...`, to the end of the text.
     UnclosedComment,
 }
 
 /// A token and where it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Token {
-    pub(crate) kind: Kind,
-    pub(crate) start: usize,
-    pub(crate) end: usize,
+pub struct Token {
+    /// What it is.
+    pub kind: Kind,
+    /// Its first byte.
+    pub start: usize,
+    /// The byte after its last.
+    pub end: usize,
+}
+
+/// All tokens of a text, without comments, and without the one for its end.
+pub fn tokens(text: &str) -> Vec<Token> {
+    let mut tokens = Tokens::new(text);
+    std::iter::from_fn(|| Some(tokens.take()).filter(|token| token.kind != Kind::End)).collect()
 }
 
 /// Reads a text token by token.

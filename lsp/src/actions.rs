@@ -1,0 +1,272 @@
+//! What puts a problem right, as an edit that can be made at once.
+
+use kirk_compiler::ast::Body;
+use kirk_compiler::form::Form;
+use kirk_compiler::{Code, Diagnostic, OriginKind, Span};
+use kirk_network::{Conflict, Duration, Network, Part};
+
+use crate::analysis::{Analysis, analyse};
+use crate::definition::bare;
+use crate::mission::{Judgement, Mission, judge};
+use crate::outline::top_level;
+use crate::rename::edited;
+use crate::view::View;
+
+/// An edit that puts a problem right.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Action {
+    /// What it does.
+    pub title: String,
+    /// The position of the problem among those given.
+    pub problem: usize,
+    /// The edits.
+    pub edits: Vec<(Span, String)>,
+}
+
+/// What can be done about problems of the newest text.
+pub fn actions(view: &View, problems: &[Diagnostic]) -> Vec<Action> {
+    let analysis = &*view.analysis;
+    let mut found = Vec::new();
+    for (problem, diagnostic) in problems.iter().enumerate() {
+        let mut offer = |fix: Option<(String, Vec<(Span, String)>)>| {
+            found.extend(fix.map(|(title, edits)| Action { title, problem, edits }));
+        };
+        offer(did_you_mean(analysis, diagnostic));
+        match diagnostic.code {
+            Code::UnknownProgram => offer(create(analysis, diagnostic)),
+            Code::DelayNotContingent => offer(make_contingent(analysis, diagnostic)),
+            Code::LowerAboveUpper | Code::DelayReversed => offer(swap(analysis, diagnostic)),
+            Code::StartsAtDelayedEnd => offer(slack_around(analysis, diagnostic.span)),
+            Code::NotControllable if view.is_current() => {
+                let mission = view.missions.iter().find(|mission| mission.name == diagnostic.span);
+                if let Some(mission) = mission
+                    && let Judgement::Uncontrollable(conflict) = &mission.verdict
+                {
+                    settle(analysis, mission, conflict).into_iter().for_each(|fix| offer(Some(fix)));
+                }
+            }
+            _ => {}
+        }
+    }
+    found.dedup_by(|a, b| a.title == b.title && a.edits == b.edits);
+    found
+}
+
+type Fix = (String, Vec<(Span, String)>);
+
+/// The name that was probably meant instead of the one at the place of the problem.
+fn did_you_mean(analysis: &Analysis, diagnostic: &Diagnostic) -> Option<Fix> {
+    let help = diagnostic.help.as_deref()?;
+    let (_, rest) = help.split_once("Did you mean ")?;
+    // A name is quoted in one way, a string in the other.
+    let meant = match rest.strip_prefix('`') {
+        Some(rest) => rest.split_once('`')?.0,
+        None => rest.split_once('?')?.0.trim().strip_prefix('"').and(rest.split_once('?'))?.0,
+    };
+    let written = analysis.source.slice(diagnostic.span);
+    let is_one_word =
+        !written.is_empty() && !written.contains(|c: char| c.is_whitespace() || "()".contains(c));
+    if !is_one_word || meant.starts_with("--") {
+        return None;
+    }
+    let both_have = |mark: char| meant.contains(mark) || !written.contains(mark);
+    let span = if both_have(':') { diagnostic.span } else { bare(analysis, diagnostic.span) };
+    Some((format!("Change to `{meant}`"), vec![(span, meant.to_string())]))
+}
+
+/// A definition of the program that is called and does not exist, behind the one that calls it.
+fn create(analysis: &Analysis, diagnostic: &Diagnostic) -> Option<Fix> {
+    let name = analysis.source.slice(bare(analysis, diagnostic.span));
+    if name.is_empty() || name.len() != (diagnostic.span.end - diagnostic.span.start) as usize {
+        return None;
+    }
+    let mut open: Vec<&Body> = analysis.program.programs.iter().flat_map(|program| &program.body).collect();
+    let mut count = 0;
+    while let Some(body) = open.pop() {
+        if let Body::Call(call) = body
+            && call.program.span == diagnostic.span
+        {
+            count = call.arguments.len();
+        }
+        open.extend(body.parts());
+    }
+    let parameters: Vec<String> = (1..=count).map(|number| format!("x{number}")).collect();
+    let at = top_level(analysis, diagnostic.span).end;
+    let text = format!(
+        "\n\n(define-control-program {name} ({})\n  (declare (primitive)\n    (duration (simple :lower-bound 5 :upper-bound 10))))",
+        parameters.join(" ")
+    );
+    let end_of_line = if analysis.text().contains("\r\n") { "\r\n" } else { "\n" };
+    Some((
+        format!("Create the program `{name}`"),
+        vec![(Span { source: 0, start: at, end: at }, text.replace('\n', end_of_line))],
+    ))
+}
+
+/// `:contingent t` for a duration whose end is heard late.
+fn make_contingent(analysis: &Analysis, diagnostic: &Diagnostic) -> Option<Fix> {
+    let duration = analysis.program.programs.iter().filter_map(|program| program.duration.as_ref()).find(
+        |duration| duration.span.start <= diagnostic.span.start && diagnostic.span.end <= duration.span.end,
+    )?;
+    let form = innermost(analysis, duration.span.start)?;
+    let items = form.list()?;
+    let written = items.iter().position(|item| item.keyword() == Some("contingent"));
+    let edit = match written.and_then(|at| items.get(at + 1)) {
+        Some(value) => (value.span, "t".to_string()),
+        None => {
+            let at = form.span.end - 1;
+            (Span { source: 0, start: at, end: at }, " :contingent t".to_string())
+        }
+    };
+    Some(("Let Nature decide: `:contingent t`".to_string(), vec![edit]))
+}
+
+/// The two bounds the other way round.
+fn swap(analysis: &Analysis, diagnostic: &Diagnostic) -> Option<Fix> {
+    let (a, b) = (diagnostic.span, diagnostic.labels.first()?.span);
+    let text = |span| analysis.source.slice(span).to_string();
+    let apart = a.end <= b.start || b.end <= a.start;
+    let is_value = |text: &str| !text.is_empty() && !text.starts_with("(simple");
+    (apart && is_value(&text(a)) && is_value(&text(b)))
+        .then(|| ("Swap the bounds".to_string(), vec![(a, text(b)), (b, text(a))]))
+}
+
+/// What would settle a conflict: for each bound of ours in it as much more as is missing, and slack where ends have to meet.
+fn settle(analysis: &Analysis, mission: &Mission, conflict: &Conflict) -> Vec<Fix> {
+    let (network, origins) = (&mission.plan.network, &mission.plan.origins);
+    let missing = conflict.total.as_micros().saturating_neg();
+    let mut fixes: Vec<Fix> = Vec::new();
+    for share in &conflict.members {
+        match share.part {
+            Part::RequirementUpper(index) | Part::RequirementLower(index) if is_bound(mission, index) => {
+                let origin = &origins.requirements[index];
+                let upper = matches!(share.part, Part::RequirementUpper(_));
+                let times = i64::from(share.times.max(1));
+                let by = Duration::from_micros(
+                    missing.div_euclid(times) + i64::from(missing.rem_euclid(times) != 0),
+                );
+                let place = origin.places[usize::from(upper)];
+                fixes.extend(relax(analysis, place, network, share.part, by));
+            }
+            Part::RequirementUpper(index) | Part::RequirementLower(index) | Part::Join(index) => {
+                let Some(origin) = origins.requirements.get(index) else { continue };
+                if origin.kind == OriginKind::Join && meets_nature(network, index) {
+                    fixes
+                        .extend(add_slack(analysis, origin.span).filter(|fix| helps(analysis, mission, fix)));
+                }
+            }
+            _ => {}
+        }
+    }
+    let mut unique: Vec<Fix> = Vec::new();
+    for fix in fixes {
+        if !unique.contains(&fix) {
+            unique.push(fix);
+        }
+    }
+    unique
+}
+
+/// True if less is missing after an edit. Of large missions that is not tried, as it takes as long as the verdict.
+fn helps(analysis: &Analysis, mission: &Mission, (_, edits): &Fix) -> bool {
+    const LARGE: usize = 2_000;
+    if mission.occurrences.len() > LARGE {
+        return true;
+    }
+    let missing = |mission: &Mission| match &mission.verdict {
+        Judgement::Uncontrollable(conflict) => conflict.total.as_micros().saturating_neg(),
+        _ => 0,
+    };
+    let (_, unjudged) = analyse(edited(analysis.text(), edits));
+    let (after, _) = judge(unjudged);
+    let same = |after: &&Mission| after.program == mission.program;
+    after.iter().filter(same).any(|after| missing(after) < missing(mission))
+}
+
+/// True if the requirement is a number that somebody wrote for one bound alone.
+fn is_bound(mission: &Mission, requirement: usize) -> bool {
+    let origin = mission.plan.origins.requirements.get(requirement);
+    origin.is_some_and(|origin| {
+        !matches!(origin.kind, OriginKind::Join | OriginKind::Order) && origin.places[0] != origin.places[1]
+    })
+}
+
+/// A bound that asks for so much less.
+fn relax(analysis: &Analysis, place: Span, network: &Network, part: Part, by: Duration) -> Option<Fix> {
+    let written = analysis.source.slice(place);
+    if written.is_empty() || written.starts_with("(simple") {
+        return None;
+    }
+    let bound = part.bound(network);
+    let (sign, what, relaxed) = match part {
+        Part::RequirementUpper(_) => ('+', "more", bound.checked_add(by)?),
+        _ => ('-', "less", bound.checked_sub(by).filter(|rest| *rest >= Duration::ZERO)?),
+    };
+    // What is no plain number is calculated from what is written.
+    let new = match Duration::parse_seconds(written) {
+        Ok(number) if number == bound => relaxed.to_string(),
+        _ => format!("({sign} {written} {by})"),
+    };
+    Some((format!("Allow {by} s {what}: `{new}`"), vec![(place, new)]))
+}
+
+/// True if the requirement is about an event that Nature decides.
+fn meets_nature(network: &Network, requirement: usize) -> bool {
+    let requirement = network.requirements()[requirement];
+    network.link_of(requirement.from).is_some() || network.link_of(requirement.to).is_some()
+}
+
+/// Slack for the form whose first word is at a place.
+fn add_slack(analysis: &Analysis, operator: Span) -> Option<Fix> {
+    let form = innermost(analysis, operator.start)?;
+    let items = form.list()?;
+    let head = items.first()?;
+    let word = head.word().filter(|word| matches!(*word, "sequence" | "parallel"))?;
+    let options = items
+        .get(1)
+        .filter(|it| it.list().is_some_and(|it| it.first().is_none_or(|first| first.keyword().is_some())));
+    let edit = match options.map(|it| (it, it.list().unwrap_or_default())) {
+        Some((options, [])) => (options.span, "(:slack t)".to_string()),
+        Some((_, [keyword, value])) if keyword.keyword() == Some("slack") => {
+            if value.word() == Some("t") {
+                return None;
+            }
+            (value.span, "t".to_string())
+        }
+        Some(_) => return None,
+        None => {
+            let at = head.span.end;
+            (Span { source: 0, start: at, end: at }, " (:slack t)".to_string())
+        }
+    };
+    Some((format!("Give the `{word}` slack: `(:slack t)`"), vec![edit]))
+}
+
+/// Slack for the sequence that a call is a part of.
+fn slack_around(analysis: &Analysis, call: Span) -> Option<Fix> {
+    let mut operator = None;
+    let mut forms = &analysis.forms[..];
+    while let Some(form) = forms.iter().find(|it| it.span.start <= call.start && call.end <= it.span.end) {
+        if form.span == call {
+            break;
+        }
+        forms = form.list().unwrap_or_default();
+        // These are no forms of their own: what is in them belongs to the form around.
+        if !matches!(form.call(), Some(("label" | "let" | "let*" | "dotimes", _))) {
+            operator = forms.first();
+        }
+    }
+    add_slack(analysis, operator?.span)
+}
+
+/// The innermost list around an offset.
+fn innermost(analysis: &Analysis, offset: u32) -> Option<&Form> {
+    let mut found = None;
+    let mut forms = &analysis.forms[..];
+    while let Some(form) = forms.iter().find(|it| it.span.start <= offset && offset < it.span.end) {
+        let Some(items) = form.list() else { break };
+        found = Some(form);
+        forms = items;
+    }
+    found
+}

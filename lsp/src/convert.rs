@@ -1,0 +1,153 @@
+//! Places and texts of the compiler in the words of the protocol.
+
+use std::collections::HashMap;
+
+use kirk_compiler::{Severity, Span};
+use lsp_types::{
+    CompletionItemKind, DiagnosticSeverity, Documentation, Location, MarkupContent, MarkupKind, Position,
+    Range, SemanticToken, SemanticTokenType, SymbolKind, TextEdit, Uri, WorkspaceEdit,
+};
+
+use crate::analysis::Analysis;
+use crate::completion::CompletionKind;
+use crate::highlight::{Highlight, HighlightKind};
+use crate::lines::Encoding;
+use crate::outline::{Outline, OutlineKind};
+
+/// Converts places of one text.
+#[derive(Clone, Copy)]
+pub(crate) struct Converter<'a> {
+    pub(crate) analysis: &'a Analysis,
+    pub(crate) uri: &'a Uri,
+    pub(crate) encoding: Encoding,
+}
+
+impl Converter<'_> {
+    pub(crate) fn position(&self, offset: u32) -> Position {
+        self.analysis.lines.position(self.analysis.text(), offset, self.encoding)
+    }
+
+    pub(crate) fn range(&self, span: Span) -> Range {
+        Range { start: self.position(span.start), end: self.position(span.end) }
+    }
+
+    pub(crate) fn location(&self, span: Span) -> Location {
+        Location { uri: self.uri.clone(), range: self.range(span) }
+    }
+
+    pub(crate) fn edit(&self, (span, new_text): (Span, String)) -> TextEdit {
+        TextEdit { range: self.range(span), new_text }
+    }
+
+    /// Edits of this document.
+    pub(crate) fn workspace_edit(&self, edits: Vec<(Span, String)>) -> WorkspaceEdit {
+        let edits = edits.into_iter().map(|edit| self.edit(edit)).collect();
+        // Addresses hold no state that would change where they are.
+        #[allow(clippy::mutable_key_type)]
+        let changes = HashMap::from([(self.uri.clone(), edits)]);
+        WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() }
+    }
+
+    pub(crate) fn span(&self, range: Range) -> Span {
+        let (start, end) = (self.offset(range.start), self.offset(range.end));
+        Span { source: 0, start, end: end.max(start) }
+    }
+
+    pub(crate) fn offset(&self, position: Position) -> u32 {
+        self.analysis.lines.offset(self.analysis.text(), position, self.encoding) as u32
+    }
+}
+
+pub(crate) fn severity(severity: Severity) -> DiagnosticSeverity {
+    match severity {
+        Severity::Error => DiagnosticSeverity::ERROR,
+        Severity::Warning => DiagnosticSeverity::WARNING,
+        Severity::Note => DiagnosticSeverity::INFORMATION,
+    }
+}
+
+pub(crate) fn markdown(value: String) -> MarkupContent {
+    MarkupContent { kind: MarkupKind::Markdown, value }
+}
+
+pub(crate) fn documentation(value: String) -> Option<Documentation> {
+    (!value.is_empty()).then(|| Documentation::MarkupContent(markdown(value)))
+}
+
+pub(crate) fn completion_kind(kind: CompletionKind) -> CompletionItemKind {
+    match kind {
+        CompletionKind::Word => CompletionItemKind::KEYWORD,
+        CompletionKind::Keyword => CompletionItemKind::PROPERTY,
+        CompletionKind::Program => CompletionItemKind::FUNCTION,
+        CompletionKind::Number => CompletionItemKind::CONSTANT,
+        CompletionKind::Variable => CompletionItemKind::VARIABLE,
+        CompletionKind::Label => CompletionItemKind::EVENT,
+        CompletionKind::Accessor => CompletionItemKind::FIELD,
+        CompletionKind::Class => CompletionItemKind::CLASS,
+        CompletionKind::Value => CompletionItemKind::VALUE,
+    }
+}
+
+impl Converter<'_> {
+    #[allow(deprecated, reason = "the field has no default")]
+    pub(crate) fn symbol(&self, outline: Outline) -> lsp_types::DocumentSymbol {
+        let kind = match outline.kind {
+            OutlineKind::Primitive => SymbolKind::EVENT,
+            OutlineKind::Program => SymbolKind::FUNCTION,
+            OutlineKind::Number => SymbolKind::CONSTANT,
+            OutlineKind::Class => SymbolKind::CLASS,
+            OutlineKind::Slot => SymbolKind::FIELD,
+            OutlineKind::Package => SymbolKind::NAMESPACE,
+        };
+        let children: Vec<_> = outline.children.into_iter().map(|child| self.symbol(child)).collect();
+        lsp_types::DocumentSymbol {
+            name: outline.name,
+            detail: (!outline.detail.is_empty()).then_some(outline.detail),
+            kind,
+            tags: None,
+            deprecated: None,
+            range: self.range(outline.whole),
+            selection_range: self.range(outline.selection),
+            children: (!children.is_empty()).then_some(children),
+        }
+    }
+
+    /// Each piece relative to the one before it.
+    pub(crate) fn semantic_tokens(&self, highlights: &[Highlight]) -> Vec<SemanticToken> {
+        let mut last = Position::default();
+        let mut tokens = Vec::with_capacity(highlights.len());
+        for highlight in highlights {
+            let start = self.position(highlight.span.start);
+            let line = start.line - last.line;
+            tokens.push(SemanticToken {
+                delta_line: line,
+                delta_start: if line == 0 { start.character - last.character } else { start.character },
+                length: self.encoding.length(self.analysis.source.slice(highlight.span)),
+                token_type: highlight.kind as u32,
+                token_modifiers_bitset: u32::from(highlight.definition),
+            });
+            last = start;
+        }
+        tokens
+    }
+}
+
+/// The types of pieces in the order of their numbers.
+pub(crate) fn legend() -> Vec<SemanticTokenType> {
+    let kinds = [
+        (HighlightKind::Comment, SemanticTokenType::COMMENT),
+        (HighlightKind::String, SemanticTokenType::STRING),
+        (HighlightKind::Number, SemanticTokenType::NUMBER),
+        (HighlightKind::Keyword, SemanticTokenType::KEYWORD),
+        (HighlightKind::Operator, SemanticTokenType::OPERATOR),
+        (HighlightKind::Function, SemanticTokenType::FUNCTION),
+        (HighlightKind::Parameter, SemanticTokenType::PARAMETER),
+        (HighlightKind::Variable, SemanticTokenType::VARIABLE),
+        (HighlightKind::Property, SemanticTokenType::PROPERTY),
+        (HighlightKind::Class, SemanticTokenType::CLASS),
+        (HighlightKind::Event, SemanticTokenType::EVENT),
+        (HighlightKind::Namespace, SemanticTokenType::NAMESPACE),
+    ];
+    debug_assert!(kinds.iter().enumerate().all(|(number, (kind, _))| *kind as usize == number));
+    kinds.into_iter().map(|(_, name)| name).collect()
+}

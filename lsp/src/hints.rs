@@ -1,0 +1,122 @@
+//! When each occurrence happens, beside it in the text; and the verdict, above the program that is started.
+
+use kirk_compiler::Span;
+use kirk_compiler::ast::Body;
+use kirk_compiler::episode::Kind;
+use kirk_network::windows::Window;
+use kirk_network::{Duration, Time};
+
+use crate::mission::{Judgement, Mission};
+use crate::view::View;
+
+/// A short text in the text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Hint {
+    /// The byte behind which it stands.
+    pub offset: u32,
+    /// What it says: `0-30 s`.
+    pub label: String,
+    /// The same in a sentence.
+    pub about: String,
+}
+
+/// The earliest start and the latest end of everything that is called between two offsets.
+pub fn hints(view: &View, within: Span) -> Vec<Hint> {
+    let mut found = Vec::new();
+    let mut open: Vec<&Body> =
+        view.analysis.program.programs.iter().flat_map(|program| &program.body).rev().collect();
+    while let Some(body) = open.pop() {
+        let span = body.span();
+        if span.end < within.start || within.end < span.start {
+            continue;
+        }
+        if matches!(body, Body::Call(_) | Body::Delay(_)) && span.end <= within.end {
+            found.extend(hint(view, span));
+        }
+        open.extend(body.parts().iter().rev());
+    }
+    found
+}
+
+fn hint(view: &View, span: Span) -> Option<Hint> {
+    let all = view.occurrences(span);
+    let windows: Vec<(Window, Window)> = all
+        .iter()
+        .filter_map(|(mission, it)| Some((mission.window(it.start)?, mission.window(it.end)?)))
+        .collect();
+    let earliest = windows.iter().map(|(start, _)| start.earliest).min()?;
+    let latest = windows.iter().map(|(_, end)| end.latest).reduce(later)?;
+    let count = match windows.len() {
+        1 => String::new(),
+        count => format!("{count}x "),
+    };
+    let (label, until) = match latest {
+        Some(latest) => {
+            (format!("{count}{earliest}-{latest} s"), format!("ends at {latest} s at the latest"))
+        }
+        None => (format!("{count}{earliest} s-"), "nothing limits when it ends".to_string()),
+    };
+    let name = &all.first()?.0.program;
+    let about = format!("starts at {earliest} s at the earliest, {until}, after the start of `{name}`");
+    Some(Hint { offset: span.end, label, about })
+}
+
+/// The later of two times; without a limit is later than any.
+fn later(a: Option<Time>, b: Option<Time>) -> Option<Time> {
+    a.zip(b).map(|(a, b)| a.max(b))
+}
+
+/// The verdict on a program.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Lens {
+    /// The name of the program.
+    pub span: Span,
+    /// What is said above it.
+    pub title: String,
+}
+
+/// The verdict on each program a mission may start from.
+pub fn lenses(view: &View) -> Vec<Lens> {
+    let mut found = Vec::new();
+    for program in &view.analysis.program.programs {
+        let span = program.name.span;
+        let started = view.occurrences(span).into_iter().find(|(mission, it)| {
+            it.kind == Kind::Program && mission.occurrences.first().is_some_and(|root| root.start == it.start)
+        });
+        let Some((mission, _)) = started else { continue };
+        let title = match (view.is_current(), view.analysis.has_errors()) {
+            (true, _) => verdict(mission),
+            (false, true) => format!("before the errors: {}", verdict(mission)),
+            (false, false) => format!("before the last change: {}", verdict(mission)),
+        };
+        found.push(Lens { span, title });
+    }
+    found
+}
+
+fn verdict(mission: &Mission) -> String {
+    let network = &mission.plan.network;
+    match &mission.verdict {
+        Judgement::Uncontrollable(conflict) => {
+            let missing = Duration::from_micros(conflict.total.as_micros().saturating_neg());
+            format!("not controllable: in the worst case {missing} s are missing")
+        }
+        Judgement::TooLarge => "no verdict: the durations add up to too much".to_string(),
+        Judgement::Controllable => {
+            let end = mission.occurrences.first().and_then(|root| mission.window(root.end));
+            let takes = match end {
+                Some(Window { earliest, latest: Some(latest) }) if earliest == latest => {
+                    format!(", takes {latest} s")
+                }
+                Some(Window { earliest, latest: Some(latest) }) => {
+                    format!(", takes {earliest} to {latest} s")
+                }
+                Some(Window { earliest, latest: None }) => format!(", takes at least {earliest} s"),
+                None => String::new(),
+            };
+            let uncertain = network.contingents().len();
+            let links = if uncertain == 1 { "contingent duration" } else { "contingent durations" };
+            format!("controllable: whatever happens{takes}, {uncertain} {links}")
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! What the compiler knows, in the words of the Language Server Protocol.
+//!
+//! [`serve`] speaks the protocol on two streams. Each feature is one function from a text that has been analysed, or from
+//! a [`View`] with the missions in it, and an offset, to plain data; `requests` converts it.
+//!
+//! # Invariants
+//!
+//! - Any text gives an answer to every question at every offset. What is no message is answered with an error.
+//! - The one who answers waits for nobody: reading, writing and judging have threads of their own.
+//! - Diagnostics are those of the newest text. If it has errors, there is no verdict; what is shown of windows then is
+//!   that of the last text without.
+//! - Types of the protocol are named in `server`, `requests`, `convert`, `feedback`, `lines` and `document`, not in features.
+//!
+//! # Deliberately absent
+//!
+//! Files: a document is judged by itself, as in `kirk check`.
+
+mod actions;
+mod analysis;
+mod completion;
+mod convert;
+mod cursor;
+mod definition;
+mod document;
+mod feedback;
+mod folding;
+mod highlight;
+mod hints;
+mod hover;
+mod layout;
+mod lines;
+mod mission;
+mod outline;
+mod rename;
+mod requests;
+mod server;
+mod signature;
+mod transport;
+mod view;
+mod vocabulary;
+mod waits;
+
+pub use actions::{Action, actions};
+pub use analysis::{Analysis, Unjudged, analyse};
+pub use completion::{Completion, CompletionKind, completion, filled_in};
+pub use definition::{definition, references};
+pub use folding::{Fold, folding};
+pub use highlight::{Highlight, HighlightKind, highlight};
+pub use hints::{Hint, Lens, hints, lenses};
+pub use hover::{Hover, hover};
+pub use layout::layout;
+pub use lines::{Encoding, Lines};
+pub use mission::{Judgement, Mission, Occurrence, judge};
+pub use outline::{Outline, OutlineKind, outline};
+pub use rename::{edited, prepare_rename, rename};
+pub use server::serve;
+pub use signature::{Signature, signature};
+pub use view::{Shift, View};

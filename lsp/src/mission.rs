@@ -1,0 +1,110 @@
+//! A program unfolded and judged: which occurrences there are, when each can happen, and the verdict.
+
+use std::collections::BTreeMap;
+
+use kirk_compiler::episode::{Episode, Kind};
+use kirk_compiler::expand::expand;
+use kirk_compiler::lower::{events_of, lower};
+use kirk_compiler::problem::Problems;
+use kirk_compiler::{Code, Diagnostic, Plan, Span, explain_conflict, notes_on_bounds, notes_on_merging};
+use kirk_network::windows::{Window, windows};
+use kirk_network::{Conflict, EventId, Verdict, check};
+
+use crate::analysis::Unjudged;
+
+/// A program that can be started, with all that follows from it.
+#[derive(Clone, Debug)]
+pub struct Mission {
+    /// The name of the program.
+    pub program: String,
+    /// Where it is defined.
+    pub name: Span,
+    /// Its network and where that comes from.
+    pub plan: Plan,
+    /// Everything that occurs in it, in source order; the first is the mission itself.
+    pub occurrences: Vec<Occurrence>,
+    /// The occurrences of every place.
+    pub at: BTreeMap<Span, Vec<usize>>,
+    /// When each event can happen; `None` if no schedule keeps every bound.
+    pub windows: Option<Vec<Window>>,
+    /// Whether it can be promised.
+    pub verdict: Judgement,
+}
+
+/// One occurrence of a program or a form.
+#[derive(Clone, Debug)]
+pub struct Occurrence {
+    /// Its name.
+    pub name: String,
+    /// What it is an occurrence of.
+    pub kind: Kind,
+    /// Its start.
+    pub start: EventId,
+    /// Its end.
+    pub end: EventId,
+}
+
+/// The verdict on a mission.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Judgement {
+    /// It can be executed whatever happens.
+    Controllable,
+    /// It cannot, and this is why.
+    Uncontrollable(Conflict),
+    /// Its durations add up to too much.
+    TooLarge,
+}
+
+/// Unfolds and judges every program a mission may start from, and says what there is to say about them.
+pub fn judge(unjudged: Unjudged) -> (Vec<Mission>, Vec<Diagnostic>) {
+    let Unjudged { mut model, roots } = unjudged;
+    let mut missions = Vec::new();
+    let mut problems = Problems::default();
+    for root in roots {
+        model.entry = Some(root);
+        let before = problems.errors();
+        let Some(episodes) = expand(&model, &mut problems) else { continue };
+        if problems.errors() > before {
+            continue;
+        }
+        let Some(plan) = lower(&episodes) else { continue };
+        let merging = notes_on_merging(&plan.network, &plan.origins, &episodes);
+        let (mission, verdict) = mission(&episodes, plan);
+        for diagnostic in notes_on_bounds(&episodes).into_iter().chain(merging).chain(verdict) {
+            problems.push(diagnostic);
+        }
+        missions.push(mission);
+    }
+    (missions, problems.into_sorted())
+}
+
+fn mission(root: &Episode, plan: Plan) -> (Mission, Option<Diagnostic>) {
+    let (verdict, diagnostic) = match check(&plan.network) {
+        Ok(Verdict::Controllable) => (Judgement::Controllable, None),
+        Ok(Verdict::Uncontrollable(conflict)) => {
+            let diagnostic = explain_conflict(&conflict, &plan.network, &plan.origins, plan.entry);
+            (Judgement::Uncontrollable(conflict), Some(diagnostic))
+        }
+        Err(error) => {
+            let diagnostic = Diagnostic::error(Code::NumbersTooLarge, plan.entry, error.to_string());
+            (Judgement::TooLarge, Some(diagnostic))
+        }
+    };
+    let mut at: BTreeMap<Span, Vec<usize>> = BTreeMap::new();
+    let mut occurrences = Vec::new();
+    for (index, (episode, (start, end))) in events_of(root).into_iter().enumerate() {
+        at.entry(episode.span).or_default().push(index);
+        occurrences.push(Occurrence { name: episode.name.clone(), kind: episode.kind, start, end });
+    }
+    let windows = windows(&plan.network);
+    let mission =
+        Mission { program: root.name.clone(), name: root.span, plan, occurrences, at, windows, verdict };
+    (mission, diagnostic)
+}
+
+impl Mission {
+    /// When an event can happen.
+    pub fn window(&self, event: EventId) -> Option<Window> {
+        self.windows.as_ref().map(|windows| windows[event.index()])
+    }
+}

@@ -1,0 +1,375 @@
+//! The protocol: what the client asks, in its order, and what it is told unasked.
+//!
+//! Four threads. One reads and one writes, so that neither waits for the client. One judges, as that may take long. The
+//! one in the middle, here, has the documents and answers, and waits for nothing but the next event. It takes all events
+//! there are at once: of several edits that came meanwhile only the last text is analysed, and of several texts only the
+//! newest is judged.
+
+use std::collections::{BTreeMap, HashSet};
+use std::io::{BufRead, Write};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::thread;
+use std::time::Duration;
+
+use kirk_compiler::Diagnostic;
+use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response};
+use lsp_types::notification::{self, Notification as _};
+use lsp_types::{InitializeParams, Uri};
+use serde_json::Value;
+
+use crate::analysis::Unjudged;
+use crate::convert::Converter;
+use crate::document::Document;
+use crate::feedback::feedback;
+use crate::lines::Encoding;
+use crate::mission::{Mission, judge};
+use crate::requests;
+use crate::transport::{Incoming, Outgoing, read, send, write};
+
+/// What happens to the server.
+enum Event {
+    Incoming(Incoming),
+    Judged(Verdicts),
+    /// Nothing more will come.
+    End,
+}
+
+/// A text to judge.
+struct Job {
+    uri: String,
+    text: String,
+    unjudged: Unjudged,
+}
+
+/// What came of it.
+struct Verdicts {
+    uri: String,
+    text: String,
+    missions: Vec<Mission>,
+    diagnostics: Vec<Diagnostic>,
+}
+
+/// Judging deeply nested programs takes a deep stack.
+const STACK: usize = 256 << 20;
+
+/// How long what is known is held back for a verdict, so that both appear at once.
+const PATIENCE: Duration = Duration::from_millis(150);
+
+/// Serves one client until it leaves; true if it took leave as the protocol wants it.
+pub fn serve(input: impl BufRead + Send + 'static, output: impl Write + Send + 'static) -> bool {
+    let (events, inbox) = channel();
+    let (outbox, outgoing) = channel();
+    let (jobs, waiting) = channel();
+    let reader_events = events.clone();
+    thread::spawn(move || {
+        read(input, |incoming| reader_events.send(Event::Incoming(incoming)).is_ok());
+        let _ = reader_events.send(Event::End);
+    });
+    let writer = thread::spawn(move || write(output, &outgoing));
+    let judge = thread::Builder::new().stack_size(STACK).spawn(move || judge_all(&waiting, &events));
+    if judge.is_err() {
+        return false;
+    }
+    let server = Server::new(outbox, jobs);
+    let middle = thread::Builder::new().stack_size(STACK).spawn(move || server.run(&inbox));
+    let polite = middle.is_ok_and(|middle| middle.join().unwrap_or(false));
+    // The outbox is gone with the server: what is left in it is written, and no more comes.
+    let _ = writer.join();
+    polite
+}
+
+/// Judges the newest text of each document.
+fn judge_all(waiting: &Receiver<Job>, events: &Sender<Event>) {
+    while let Ok(first) = waiting.recv() {
+        let mut newest = BTreeMap::from([(first.uri.clone(), first)]);
+        for job in waiting.try_iter() {
+            newest.insert(job.uri.clone(), job);
+        }
+        for (uri, Job { text, unjudged, .. }) in newest {
+            let judged = catch_unwind(AssertUnwindSafe(|| judge(unjudged)));
+            let (missions, diagnostics) = judged.unwrap_or_default();
+            let verdicts = Verdicts { uri, text, missions, diagnostics };
+            if events.send(Event::Judged(verdicts)).is_err() {
+                return;
+            }
+        }
+    }
+}
+
+/// How far the conversation is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum State {
+    New,
+    Open,
+    ShutDown,
+}
+
+/// The documents, and what the client can do.
+pub(crate) struct Server {
+    outbox: Sender<Outgoing>,
+    jobs: Sender<Job>,
+    state: State,
+    pub(crate) encoding: Encoding,
+    pub(crate) client: requests::Client,
+    pub(crate) documents: BTreeMap<String, Document>,
+    /// Counts the requests to the client.
+    asked: i32,
+}
+
+impl Server {
+    fn new(outbox: Sender<Outgoing>, jobs: Sender<Job>) -> Server {
+        Server {
+            outbox,
+            jobs,
+            state: State::New,
+            encoding: Encoding::default(),
+            client: requests::Client::default(),
+            documents: BTreeMap::new(),
+            asked: 0,
+        }
+    }
+
+    /// Handles events until the client leaves; true if it took leave.
+    fn run(mut self, inbox: &Receiver<Event>) -> bool {
+        loop {
+            let held_back = self.documents.values().any(|document| !document.settled);
+            let first = match held_back {
+                false => inbox.recv().unwrap_or(Event::End),
+                true => match inbox.recv_timeout(PATIENCE) {
+                    Ok(event) => event,
+                    Err(RecvTimeoutError::Disconnected) => Event::End,
+                    Err(RecvTimeoutError::Timeout) => {
+                        self.publish_held_back();
+                        continue;
+                    }
+                },
+            };
+            let events: Vec<Event> = std::iter::once(first).chain(inbox.try_iter()).collect();
+            let cancelled = cancelled(&events);
+            for event in events {
+                match event {
+                    Event::Incoming(Incoming::Malformed(answer)) => {
+                        let _ = self.outbox.send(Outgoing::Raw(answer));
+                    }
+                    Event::Incoming(Incoming::Message(Message::Request(request))) => {
+                        self.request(request, &cancelled);
+                    }
+                    Event::Incoming(Incoming::Message(Message::Notification(notification))) => {
+                        if notification.method == notification::Exit::METHOD {
+                            return self.state == State::ShutDown;
+                        }
+                        let handled = catch_unwind(AssertUnwindSafe(|| self.notification(notification)));
+                        if handled.is_err() {
+                            self.log("kirk could not follow a change: this is a bug in kirk");
+                        }
+                    }
+                    // Answers to what was asked of the client: nothing depends on them.
+                    Event::Incoming(Incoming::Message(Message::Response(_))) => {}
+                    Event::Judged(verdicts) => self.judged(verdicts),
+                    Event::End => return self.state == State::ShutDown,
+                }
+            }
+            self.hand_on();
+        }
+    }
+
+    fn request(&mut self, request: Request, cancelled: &HashSet<RequestId>) {
+        let id = request.id.clone();
+        let refuse =
+            |code: ErrorCode, message: &str| Response::new_err(id.clone(), code as i32, message.to_string());
+        let response = match (self.state, request.method.as_str()) {
+            (State::New, "initialize") => self.initialize(request),
+            (State::New, _) => refuse(ErrorCode::ServerNotInitialized, "`initialize` comes first"),
+            (State::ShutDown, _) => refuse(ErrorCode::InvalidRequest, "the server has been shut down"),
+            (State::Open, "initialize") => {
+                refuse(ErrorCode::InvalidRequest, "the server is initialized already")
+            }
+            (State::Open, "shutdown") => {
+                self.state = State::ShutDown;
+                Response::new_ok(id, Value::Null)
+            }
+            (State::Open, _) if cancelled.contains(&id) => {
+                refuse(ErrorCode::RequestCanceled, "the request was cancelled")
+            }
+            (State::Open, method) => {
+                let method = method.to_string();
+                let answered = catch_unwind(AssertUnwindSafe(|| requests::answer(self, request)));
+                answered.unwrap_or_else(|_| {
+                    refuse(ErrorCode::InternalError, &format!("`{method}` failed: this is a bug in kirk"))
+                })
+            }
+        };
+        send(&self.outbox, response);
+    }
+
+    fn initialize(&mut self, request: Request) -> Response {
+        let params: InitializeParams = match serde_json::from_value(request.params) {
+            Ok(params) => params,
+            Err(error) => {
+                return Response::new_err(request.id, ErrorCode::InvalidParams as i32, error.to_string());
+            }
+        };
+        let general = params.capabilities.general.as_ref();
+        self.encoding = Encoding::negotiate(general.and_then(|it| it.position_encodings.as_deref()));
+        self.client = requests::Client::new(&params.capabilities);
+        self.state = State::Open;
+        Response::new_ok(request.id, requests::initialized(self.encoding))
+    }
+
+    fn notification(&mut self, notification: Notification) {
+        if self.state != State::Open {
+            return;
+        }
+        let Notification { method, params } = notification;
+        let understood = match method.as_str() {
+            notification::DidOpenTextDocument::METHOD => {
+                serde_json::from_value(params).map(|it| self.opened(it))
+            }
+            notification::DidChangeTextDocument::METHOD => {
+                serde_json::from_value(params).map(|it| self.changed(it))
+            }
+            notification::DidCloseTextDocument::METHOD => {
+                serde_json::from_value(params).map(|it| self.closed(it))
+            }
+            _ => Ok(()),
+        };
+        if let Err(error) = understood {
+            self.log(&format!("`{method}` is not as it should be: {error}"));
+        }
+    }
+
+    fn opened(&mut self, params: lsp_types::DidOpenTextDocumentParams) {
+        let item = params.text_document;
+        let document = Document::new(item.uri.clone(), item.version, item.text);
+        self.documents.insert(key(&item.uri), document);
+    }
+
+    fn changed(&mut self, params: lsp_types::DidChangeTextDocumentParams) {
+        let (uri, version) = (params.text_document.uri, params.text_document.version);
+        match self.documents.get_mut(&key(&uri)) {
+            Some(document) => document.change(version, params.content_changes, self.encoding),
+            None => self.log(&format!("`{}` was changed and is not open", uri.as_str())),
+        }
+    }
+
+    fn closed(&mut self, params: lsp_types::DidCloseTextDocumentParams) {
+        let uri = params.text_document.uri;
+        if self.documents.remove(&key(&uri)).is_some() {
+            let nothing = lsp_types::PublishDiagnosticsParams { uri, diagnostics: Vec::new(), version: None };
+            self.notify::<notification::PublishDiagnostics>(nothing);
+        }
+    }
+
+    /// Hands on every text that is new: to be judged, or, with errors in it, to the client.
+    fn hand_on(&mut self) {
+        let mut settled = Vec::new();
+        for (uri, document) in &mut self.documents {
+            if document.handed_on {
+                continue;
+            }
+            document.handed_on = true;
+            match document.take_unjudged() {
+                Some(unjudged) => {
+                    let text = document.analysis().text().to_string();
+                    let _ = self.jobs.send(Job { uri: uri.clone(), text, unjudged });
+                }
+                None => settled.push(uri.clone()),
+            }
+        }
+        settled.iter().for_each(|uri| self.publish(uri));
+    }
+
+    fn judged(&mut self, verdicts: Verdicts) {
+        let Verdicts { uri, text, missions, diagnostics } = verdicts;
+        // Closed meanwhile.
+        let Some(document) = self.documents.get_mut(&uri) else { return };
+        if document.keep(text, missions, diagnostics) {
+            self.publish(&uri);
+            for method in self.client.refreshes() {
+                self.asked += 1;
+                let id = RequestId::from(self.asked);
+                send(&self.outbox, Request { id, method: method.to_string(), params: Value::Null });
+            }
+        }
+    }
+
+    /// Publishes what is known while a verdict is still to come.
+    fn publish_held_back(&mut self) {
+        let waiting: Vec<String> =
+            self.documents.iter().filter(|(_, it)| !it.settled).map(|(uri, _)| uri.clone()).collect();
+        waiting.iter().for_each(|uri| self.publish(uri));
+    }
+
+    fn publish(&mut self, uri: &str) {
+        let Some(document) = self.documents.get_mut(uri) else { return };
+        document.settled = true;
+        let diagnostics = document.diagnostics();
+        let analysis = document.analysis();
+        let converter = Converter { analysis: &analysis, uri: &document.uri, encoding: self.encoding };
+        let params = feedback(&diagnostics, document.version, converter);
+        self.notify::<notification::PublishDiagnostics>(params);
+    }
+
+    fn notify<N: notification::Notification>(&self, params: N::Params) {
+        send(&self.outbox, Notification::new(N::METHOD.to_string(), params));
+    }
+
+    fn log(&self, message: &str) {
+        let params = lsp_types::LogMessageParams {
+            typ: lsp_types::MessageType::WARNING,
+            message: message.to_string(),
+        };
+        self.notify::<notification::LogMessage>(params);
+    }
+}
+
+/// Documents are told apart by the text of their addresses.
+pub(crate) fn key(uri: &Uri) -> String {
+    uri.as_str().to_string()
+}
+
+/// The requests that are withdrawn by something that came with them.
+fn cancelled(events: &[Event]) -> HashSet<RequestId> {
+    let id = |event: &Event| match event {
+        Event::Incoming(Incoming::Message(Message::Notification(it)))
+            if it.method == notification::Cancel::METHOD =>
+        {
+            serde_json::from_value(it.params.get("id")?.clone()).ok()
+        }
+        _ => None,
+    };
+    events.iter().filter_map(id).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn a_request_withdrawn_before_it_is_looked_at_is_not_answered() {
+        let notification = |method: &str, params| {
+            let notification = Notification { method: method.to_string(), params };
+            Event::Incoming(Incoming::Message(Message::Notification(notification)))
+        };
+        let events = [
+            notification("$/cancelRequest", json!({"id": 7})),
+            notification("$/cancelRequest", json!({"id": "seven"})),
+            notification("$/cancelRequest", json!({"nothing": 8})),
+            notification("exit", json!({"id": 9})),
+        ];
+        let withdrawn = cancelled(&events);
+        assert_eq!(withdrawn, HashSet::from([RequestId::from(7), RequestId::from("seven".to_string())]));
+        let (outbox, outgoing) = channel();
+        let (jobs, _waiting) = channel();
+        let mut server = Server { state: State::Open, ..Server::new(outbox, jobs) };
+        let params = json!({"textDocument": {"uri": "file:///x"}, "position": {"line": 0, "character": 0}});
+        server
+            .request(Request { id: 7.into(), method: "textDocument/hover".to_string(), params }, &withdrawn);
+        let Ok(Outgoing::Message(Message::Response(answer))) = outgoing.try_recv() else {
+            panic!("no answer")
+        };
+        assert_eq!(answer.response_result.unwrap_err().code, ErrorCode::RequestCanceled as i32);
+    }
+}

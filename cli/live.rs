@@ -8,6 +8,8 @@ mod keys;
 mod log;
 mod state;
 mod terminal;
+#[cfg(test)]
+mod tests;
 mod text;
 mod view;
 

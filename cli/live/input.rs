@@ -10,6 +10,7 @@ pub(crate) enum Key {
     PageDown,
     Home,
     End,
+    Tab,
     Escape,
     /// Ctrl-C, which is no signal while the screen is up.
     Interrupt,
@@ -25,7 +26,7 @@ pub(crate) struct Decoder {
     pasting: bool,
 }
 
-/// Longer sequences are none.
+/// No sequence of a key is as long as this.
 const LONGEST: usize = 32;
 
 impl Decoder {
@@ -44,8 +45,11 @@ impl Decoder {
         if self.begun.is_empty() && byte != ESCAPE {
             return plain(byte).filter(|_| !self.pasting);
         }
-        if byte == ESCAPE || self.begun.len() > LONGEST {
+        if byte == ESCAPE {
             self.begun.clear();
+        } else if self.begun.len() == LONGEST {
+            // No sequence of ours, but its end has to be found.
+            self.begun.pop();
         }
         self.begun.push(byte);
         match self.begun.as_slice() {
@@ -89,6 +93,7 @@ const ESCAPE: u8 = 0x1b;
 
 fn plain(byte: u8) -> Option<Key> {
     match byte {
+        b'\t' => Some(Key::Tab),
         0x03 => Some(Key::Interrupt),
         0x0c => Some(Key::Redraw),
         b' '..=b'~' => Some(Key::Char(char::from(byte))),
@@ -102,9 +107,10 @@ mod tests {
 
     #[test]
     fn sequences_are_keys_however_they_are_cut() {
-        let bytes = b"1\x1b[A\x1bOB\x1b[5~\x1b[1;5Cz\x1b[H?\x03";
+        let bytes = b"1\t\x1b[A\x1bOB\x1b[5~\x1b[1;5Cz\x1b[H?\x03";
         let keys = [
             Key::Char('1'),
+            Key::Tab,
             Key::Up,
             Key::Down,
             Key::PageUp,
@@ -143,6 +149,7 @@ mod tests {
         let mut endless = b"\x1b[".to_vec();
         endless.extend([b'1'; 10_000]);
         assert_eq!(decoder.keys(&endless), []);
-        assert!(decoder.begun.len() <= LONGEST + 1);
+        assert!(decoder.begun.len() <= LONGEST);
+        assert_eq!(decoder.keys(b"~2"), [Key::Char('2')]);
     }
 }

@@ -21,6 +21,8 @@ pub(crate) struct State {
     pub(crate) first: Option<usize>,
     /// How many rows of the timetable are visible.
     pub(crate) visible: usize,
+    /// How often the page of what may be heard was turned.
+    pub(crate) turned: usize,
     pub(crate) help: bool,
     /// Somebody asked for the end of the mission.
     pub(crate) stopping: bool,
@@ -98,7 +100,10 @@ impl State {
     /// Notes what happened, if it does not show in the timetable.
     pub(crate) fn note(&mut self, happening: &Happening) {
         let (at, text) = match happening {
-            Happening::Failed { at, id, reason } => (at, format!("the driver failed: {id}: {reason}")),
+            Happening::Failed { at, id, reason } => {
+                let name = id.split_once('/').map_or(id.as_str(), |(_, name)| name);
+                (at, format!("the driver failed: {name}: {reason}"))
+            }
             Happening::Warning { at, text } => (at, text.clone()),
             Happening::Sent { .. } | Happening::Fixed { .. } | Happening::Over { .. } => return,
         };
@@ -136,6 +141,7 @@ impl State {
             Key::Char('?') => self.help = true,
             Key::Char(char) => return self.observe(char, confirmed, now),
             Key::Redraw => return Action::Redraw,
+            Key::Tab => self.turned = self.turned.wrapping_add(1),
             Key::Up => self.scroll(-1),
             Key::Down => self.scroll(1),
             Key::PageUp => self.scroll(-(self.visible.max(2) as isize - 1)),

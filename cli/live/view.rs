@@ -19,7 +19,7 @@ use crate::timetable::cells;
 const WIDE: u16 = 110;
 
 /// From this width on there is room for whole sentences.
-const ROOMY: usize = 60;
+const ROOMY: usize = 48;
 
 /// The rows of the timetable that stay visible, if there are so many, whatever else there is to show.
 const ROWS: usize = 4;
@@ -49,7 +49,7 @@ pub(crate) fn view(state: &State, now: Time, color: bool, buffer: &mut Buffer) -
         let below = view.below(snapshot, right.width as usize, right.height as usize);
         (Rect { width, ..body }, right, below)
     } else {
-        let rows = (snapshot.rows.len() + 1).min(ROWS + 1);
+        let rows = (snapshot.rows.len() + 1).min(ROWS.min(body.height as usize / 4) + 1);
         let below = view.below(snapshot, wide, (body.height as usize).saturating_sub(rows));
         let (left, right) = split(body, body.height.saturating_sub(below.len() as u16));
         (left, right, below)
@@ -157,8 +157,9 @@ impl View<'_> {
         // The latest is always there; more of it if there is room.
         let said = self.said(wide, height.saturating_sub(possible.len() + pending.len()).clamp(2, 6));
         let said_least = said.len().min(2);
-        let possible = fit(possible, height.saturating_sub(said_least), "possible");
-        let pending = fit(pending, height.saturating_sub(said_least + possible.len()), "with the driver");
+        let possible = self.page(possible, height.saturating_sub(said_least));
+        let mut pending = pending;
+        pending.truncate(height.saturating_sub(said_least + possible.len()));
         let room = height.saturating_sub(possible.len() + pending.len());
         let said = said[said.len().saturating_sub(room)..].to_vec();
         [possible, pending, said].concat()
@@ -189,8 +190,23 @@ impl View<'_> {
                 Some(until) if self.now > until => self.style(Color::Red),
                 _ => self.style(Color::Green).add_modifier(Modifier::BOLD),
             };
-            lines.push(Line::styled(text, style));
+            lines.push(Line::styled(shorten(&text, wide), style));
         }
+        lines
+    }
+
+    /// As many lines as there is room for: if these are not all below the title, a page of them.
+    fn page(&self, mut lines: Vec<Line<'static>>, height: usize) -> Vec<Line<'static>> {
+        if lines.len() <= height {
+            return lines;
+        }
+        let room = height.saturating_sub(1).max(1);
+        let pages = (lines.len() - 1).div_ceil(room);
+        let page = self.state.turned % pages;
+        let title = format!("Press what has happened (page {} of {pages}: Tab)", page + 1);
+        lines[0] = Line::styled(title, Style::new().add_modifier(Modifier::BOLD));
+        lines.drain(1..1 + page * room);
+        lines.truncate(height);
         lines
     }
 
@@ -202,16 +218,18 @@ impl View<'_> {
             return match (early, roomy) {
                 (true, true) => format!("later: from {from} s on, or never"),
                 (true, false) => format!("from {from} s"),
-                (false, _) => "now, later or never".to_string(),
+                (false, true) => "now, later or never".to_string(),
+                (false, false) => "now".to_string(),
             };
         };
         let (late, left, until) = (self.now > until, self.seconds_to(until), brief(until));
         match (early, late, roomy) {
             (true, _, true) => format!("later: from {from} s to {until} s"),
             (true, _, false) => format!("from {from} s"),
-            (_, true, _) => format!("late: due by {until} s"),
+            (_, true, true) => format!("late: due by {until} s"),
+            (_, true, false) => format!("late: {until} s"),
             (_, _, true) => format!("now: by {until} s, {left} s left"),
-            (_, _, false) => format!("now, by {until} s"),
+            (_, _, false) => format!("by {until} s"),
         }
     }
 
@@ -233,7 +251,7 @@ impl View<'_> {
         }
         let name = cut(name, if wide < ROOMY { wide / 3 } else { wide / 2 });
         let style = if again.is_some() { self.style(Color::Red) } else { self.style(Color::Cyan) };
-        Line::styled(format!(" {name} {text}"), style)
+        Line::styled(shorten(&format!(" {name} {text}"), wide), style)
     }
 
     /// What was said lately, in lines, the latest last.
@@ -293,6 +311,7 @@ fn help(wide: usize) -> Vec<Line<'static>> {
     let keys = [
         ("1-9, a-z", "the event beside the key has happened: kirk hears of it now"),
         ("Up Down PgUp PgDn Home", "look back in the timetable"),
+        ("Tab", "turn the page of what may happen"),
         ("End", "follow the timetable again"),
         ("Ctrl-L", "draw the screen anew"),
         ("Ctrl-C", "twice: stop the mission"),
@@ -311,18 +330,6 @@ fn help(wide: usize) -> Vec<Line<'static>> {
             let name = fill(&name.unwrap_or_default(), column);
             let name = Span::styled(format!(" {name} "), Style::new().add_modifier(Modifier::BOLD));
             lines.push(Line::from(vec![name, Span::raw(text.unwrap_or_default())]));
-        }
-    }
-    lines
-}
-
-/// So many lines of all; the last one says what is missing.
-fn fit(mut lines: Vec<Line<'static>>, height: usize, what: &str) -> Vec<Line<'static>> {
-    if lines.len() > height {
-        let more = lines.len() - height.saturating_sub(1);
-        lines.truncate(height.saturating_sub(1));
-        if height > 0 {
-            lines.push(Line::raw(format!(" and {more} more {what}")));
         }
     }
     lines

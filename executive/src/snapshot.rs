@@ -87,3 +87,112 @@ fn possible(executive: &Executive) -> Vec<Possible> {
     all.sort_by_key(|possible| possible.from);
     all
 }
+
+#[cfg(test)]
+mod tests {
+    use kirk_network::json;
+    use kirk_runtime::{Answer, Patience, Plan, Scope, Settings, Setup, handovers};
+
+    use super::*;
+
+    fn executive(text: &str, driver: bool) -> Executive {
+        let plan = Plan::new(&json::read(text).unwrap()).unwrap();
+        let handovers = if driver { handovers(plan.network(), None, Scope::Starts) } else { Vec::new() };
+        let second = Duration::from_secs(1);
+        let patience = Patience { first: second, most: second };
+        let settings = Settings { lateness: Duration::from_secs(5), ..Settings::default() };
+        let (program, run) = ("mission".to_string(), "run".to_string());
+        Executive::new(plan, Setup { program, run, settings, handovers, patience })
+    }
+
+    fn second(seconds: i64) -> Time {
+        Time::from_micros(seconds * 1_000_000)
+    }
+
+    /// One line for each thing there is.
+    fn told(snapshot: &Snapshot) -> Vec<String> {
+        let rows = snapshot.rows.iter().map(|row| format!("{} {}", row.event, row.how.word()));
+        let possible = snapshot.possible.iter().map(|Possible { event, from, until }| {
+            let until = until.map_or("never".to_string(), |until| until.to_string());
+            format!("{event} may be heard from {from} to {until}")
+        });
+        let next =
+            snapshot.next.iter().map(|next| format!("{} {} at {}", next.event, next.how.word(), next.at));
+        let pending =
+            snapshot.pending.iter().map(|pending| format!("{} pending, {}", pending.name, pending.attempts));
+        rows.chain(possible).chain(pending).chain(next).collect()
+    }
+
+    const MISSION: &str = r#"{"format": "kirk-network/1", "origin": "go",
+        "events": ["go", "scan:start", "scan:end", "data", "pack"],
+        "requirements": [{"from": "go", "to": "scan:start", "lower": 2, "upper": 4},
+                         {"from": "scan:end", "to": "pack", "lower": 1, "upper": 30}],
+        "contingents": [{"from": "scan:start", "to": "scan:end", "lower": 10, "upper": 20, "delay": [1, 2]},
+                        {"from": "scan:end", "to": "data", "lower": 5, "upper": 7, "delay": [0, null]}]}"#;
+
+    #[test]
+    fn what_has_begun_may_be_heard_when_the_model_says_so() {
+        let mut executive = executive(MISSION, false);
+        executive.handle_timeout(second(1));
+        let waiting = ["go dispatched", "scan:start dispatched at 2"];
+        assert_eq!(told(&snapshot(&mut executive, second(1), false)), waiting);
+
+        executive.handle_timeout(second(3));
+        let rows = ["go dispatched", "scan:start dispatched"];
+        let now = told(&snapshot(&mut executive, second(3), false));
+        // The data cannot come before the end of the scan, of which nothing is known yet.
+        assert_eq!(now[..2], rows);
+        assert_eq!(now[2], "scan:end may be heard from 13 to 24");
+        assert_eq!(now.len(), 4);
+    }
+
+    #[test]
+    fn what_was_heard_is_possible_no_more_and_what_follows_it_is() {
+        let mut executive = executive(MISSION, false);
+        executive.handle_timeout(second(3));
+        let end = executive.network().find("scan:end").unwrap();
+        assert_eq!(executive.handle_news(second(16), end), Answer::Accepted);
+        if let Some(rebuild) = executive.poll_rebuild(second(16)) {
+            executive.handle_rebuilt(second(16), rebuild.run());
+        }
+        let possible = snapshot(&mut executive, second(16), false).possible;
+        let data = Possible { event: "data".to_string(), from: second(19), until: None };
+        assert_eq!(possible, [data]);
+    }
+
+    #[test]
+    fn what_the_driver_has_is_pending_until_it_is_confirmed() {
+        let mut executive = executive(MISSION, true);
+        executive.handle_timeout(second(2));
+        let pending = snapshot(&mut executive, second(2), false).pending;
+        let expected = Pending {
+            name: "scan:start".to_string(),
+            latest: Some(second(4)),
+            attempts: 1,
+            again: None,
+            reason: String::new(),
+        };
+        assert_eq!(pending, [expected.clone()]);
+
+        executive.handle_failed(second(2), "run/scan:start", "no power");
+        let failed = Pending { again: Some(second(3)), reason: "no power".to_string(), ..expected };
+        assert_eq!(snapshot(&mut executive, second(2), false).pending, [failed]);
+
+        executive.handle_timeout(second(3));
+        executive.handle_executed(second(3), "run/scan:start", None);
+        let after = snapshot(&mut executive, second(3), false);
+        assert_eq!(after.pending, []);
+        assert_eq!(after.possible.len(), 1);
+    }
+
+    #[test]
+    fn at_the_end_what_was_never_heard_is_shown() {
+        let mut executive = executive(MISSION, false);
+        while let Some(due) = executive.poll_timeout() {
+            executive.handle_timeout(due);
+        }
+        let over = snapshot(&mut executive, second(200), false);
+        assert_eq!((over.outcome, over.possible.len(), &over.next), (Outcome::Completed, 0, &None));
+        assert_eq!(over.rows.iter().filter(|row| row.event == "data").count(), 1);
+    }
+}

@@ -15,9 +15,9 @@ mod view;
 
 use std::io;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use kirk_executive::{Desk, Snapshot};
+use kirk_executive::{Desk, Happening, Snapshot};
 use kirk_network::Time;
 use ratatui::backend::CrosstermBackend;
 use ratatui::layout::Rect;
@@ -28,13 +28,15 @@ use log::Tone;
 use state::{Action, Moment, State};
 use terminal::{Sent, Terminal, Writer};
 
-pub(crate) use terminal::is_there;
+pub(crate) use terminal::{is_in_background, is_there};
 
 /// How it looks.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Options {
     /// Colours may be used.
     pub(crate) color: bool,
+    /// What is said at the beginning.
+    pub(crate) greeting: Option<String>,
 }
 
 /// Why the screen came down.
@@ -42,7 +44,7 @@ pub(crate) struct Options {
 pub(crate) enum End {
     /// The mission is over.
     Over,
-    /// Somebody would not wait until the mission has stopped.
+    /// Somebody would not wait until the mission has stopped, or a signal or a panic took the screen down.
     Left,
     /// The terminal is gone, and the mission goes on.
     Gone,
@@ -51,16 +53,13 @@ pub(crate) enum End {
 /// How often the clock is looked at, and the most often it is drawn.
 const TICK_MILLIS: i64 = 100;
 
-/// How long after a signal the mission has to stop before the screen comes down without it.
-const LAST_MOMENT: Duration = Duration::from_secs(2);
-
 /// Shows a mission and takes keys until the mission is over, or somebody or something takes the screen away. Blocks: it
 /// wants a thread of its own.
 ///
 /// # Errors
 /// The terminal cannot be taken over, or fails in an unexpected way. It is given back in any case.
 pub(crate) fn run(desk: &Desk, options: Options) -> io::Result<End> {
-    let mut screen = Screen::up(options)?;
+    let mut screen = Screen::up(options.color)?;
     let started = Instant::now();
     let now = || Moment { mission: desk.clock().now(), real: started.elapsed() };
     let mut happenings = desk.listen();
@@ -68,7 +67,9 @@ pub(crate) fn run(desk: &Desk, options: Options) -> io::Result<End> {
     let mut look = Look::default();
     let mut state = State::default();
     let mut decoder = Decoder::default();
-    let mut told: Option<Instant> = None;
+    if let Some(greeting) = options.greeting {
+        state.say(now().mission, Tone::Answer, greeting);
+    }
     loop {
         match look.again(desk) {
             Looked::Seen(snapshot) => state.see(*snapshot, now()),
@@ -77,6 +78,7 @@ pub(crate) fn run(desk: &Desk, options: Options) -> io::Result<End> {
         }
         loop {
             match happenings.try_recv() {
+                Ok(happening) if matches!(*happening, Happening::Over { .. }) => return Ok(End::Over),
                 Ok(happening) => state.note(&happening),
                 Err(_) if happenings.is_empty() => break,
                 Err(lost) => state.say(now().mission, Tone::Warning, format!("not all is shown: {lost}")),
@@ -89,12 +91,8 @@ pub(crate) fn run(desk: &Desk, options: Options) -> io::Result<End> {
         if state.is_over() {
             return Ok(End::Over);
         }
-        if screen.terminal.is_told_to_stop() && told.is_none() {
-            told = Some(Instant::now());
-            state.stopping();
-            desk.stop("a signal asked for it".to_string());
-        }
-        if !screen.terminal.is_taken() || told.is_some_and(|told| told.elapsed() > LAST_MOMENT) {
+        // The signals are for the mission; the screen only makes room for what is said about them.
+        if screen.terminal.is_told_to_stop() || !screen.terminal.is_taken() {
             return Ok(End::Left);
         }
         screen.show(&mut state, now().mission)?;
@@ -121,7 +119,7 @@ pub(crate) fn run(desk: &Desk, options: Options) -> io::Result<End> {
 
 /// A terminal and what is on it.
 struct Screen {
-    options: Options,
+    color: bool,
     terminal: Terminal,
     shown: ratatui::Terminal<CrosstermBackend<Writer>>,
     size: (u16, u16),
@@ -132,13 +130,13 @@ struct Screen {
 }
 
 impl Screen {
-    fn up(options: Options) -> io::Result<Screen> {
+    fn up(color: bool) -> io::Result<Screen> {
         let terminal = Terminal::take()?;
         let size = terminal.size()?;
         let viewport = Viewport::Fixed(Rect::new(0, 0, size.0, size.1));
         let backend = CrosstermBackend::new(terminal.writer()?);
         let shown = ratatui::Terminal::with_options(backend, TerminalOptions { viewport })?;
-        Ok(Screen { options, terminal, shown, size, second: i64::MIN, stale: true })
+        Ok(Screen { color, terminal, shown, size, second: i64::MIN, stale: true })
     }
 
     /// Draws what has changed, if anything has and the terminal takes it.
@@ -165,7 +163,7 @@ impl Screen {
             self.shown.resize(Rect::new(0, 0, size.0, size.1))?;
         }
         self.shown.draw(|frame| {
-            state.visible = view::view(state, now, self.options.color, frame.buffer_mut());
+            state.visible = view::view(state, now, self.color, frame.buffer_mut());
         })?;
         Ok(())
     }

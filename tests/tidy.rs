@@ -34,6 +34,9 @@ fn what_belongs_in_one_place_is_named_in_one_place() {
         ("codespan-reporting", "."),
         ("hyper", "executive"),
         ("subtle", "executive"),
+        ("crossterm", "."),
+        ("ratatui", "."),
+        ("signal-hook", "."),
     ] {
         for folder in [".", "compiler", "executive", "network", "runtime"] {
             let named =

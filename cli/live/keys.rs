@@ -114,7 +114,6 @@ mod tests {
     #[test]
     fn no_key_changes_its_meaning_at_once() {
         let seed = 7;
-        println!("seed {seed}");
         let mut random = seed;
         let mut next = |below: u64| {
             // Knuth's generator: enough for coming and going.
@@ -132,7 +131,10 @@ mod tests {
                 let Meaning::Event(event) = keys.meaning(key) else { continue };
                 assert!(events.contains(&event.as_str()));
                 if let Some((_, before, last)) = seen.iter().find(|(seen, ..)| *seen == key) {
-                    assert!(before == event || now - *last >= REST, "{key}: {before}, then {event}");
+                    assert!(
+                        before == event || now - *last >= REST,
+                        "seed {seed}: {key} was {before}, then {event}"
+                    );
                 }
                 seen.retain(|(seen, ..)| *seen != key);
                 seen.push((key, event.clone(), now));

@@ -82,11 +82,6 @@ impl State {
         }
     }
 
-    /// Something other than a key asked for the end of the mission.
-    pub(crate) fn stopping(&mut self) {
-        (self.stopping, self.changed) = (true, true);
-    }
-
     /// True when there is nothing more to see.
     pub(crate) fn is_over(&self) -> bool {
         self.snapshot.as_ref().is_some_and(|snapshot| snapshot.outcome != Outcome::Running)

@@ -27,8 +27,6 @@ pub(crate) struct Terminal {
 struct Signals {
     hangup: Arc<AtomicBool>,
     stop: Arc<AtomicBool>,
-    /// The screen is down: what ends a process does so again.
-    down: Arc<AtomicBool>,
 }
 
 /// What a terminal sent.
@@ -45,15 +43,17 @@ const PATIENCE_MILLIS: i64 = 500;
 /// The terminal is taken over.
 static TAKEN: AtomicBool = AtomicBool::new(false);
 
-/// True if somebody sits before a terminal that can show a screen, and this process may use it: not in the background,
-/// where it would be stopped for that.
+/// True if somebody sits before a terminal that can show a screen, and this process may use it.
 pub(crate) fn is_there() -> bool {
     let dumb = std::env::var_os("TERM").is_none_or(|name| name.is_empty() || name == "dumb");
     let shown = io::stdout().is_terminal() || io::stderr().is_terminal();
-    if dumb || !shown || !io::stdin().is_terminal() {
-        return false;
-    }
-    open().is_ok_and(|file| tcgetpgrp(&file).is_ok_and(|group| group == rustix::process::getpgrp()))
+    !dumb && shown && io::stdin().is_terminal() && !is_in_background() && open().is_ok()
+}
+
+/// True if standard input is a terminal that is somebody else's now: who reads from it there is stopped for that.
+pub(crate) fn is_in_background() -> bool {
+    let stdin = io::stdin();
+    stdin.is_terminal() && tcgetpgrp(&stdin).is_ok_and(|group| group != rustix::process::getpgrp())
 }
 
 impl Terminal {
@@ -124,7 +124,6 @@ impl Terminal {
 impl Drop for Terminal {
     fn drop(&mut self) {
         restore();
-        self.signals.down.store(true, Ordering::SeqCst);
     }
 }
 
@@ -154,16 +153,12 @@ fn restore_on_panic() {
 }
 
 impl Signals {
-    /// A hangup ends nothing from now on: the mission goes on without a terminal.
+    /// A hangup ends nothing from now on: the mission goes on without a terminal. What the other signals mean for the
+    /// mission is said elsewhere.
     fn watch() -> io::Result<Signals> {
-        let signals = Signals {
-            hangup: Arc::new(AtomicBool::new(false)),
-            stop: Arc::new(AtomicBool::new(false)),
-            down: Arc::new(AtomicBool::new(false)),
-        };
+        let signals = Signals { hangup: Arc::default(), stop: Arc::default() };
         flag::register(SIGHUP, Arc::clone(&signals.hangup))?;
         for signal in [SIGINT, SIGTERM] {
-            flag::register_conditional_default(signal, Arc::clone(&signals.down))?;
             flag::register(signal, Arc::clone(&signals.stop))?;
         }
         Ok(signals)

@@ -22,4 +22,4 @@ pub use lateness::Lateness;
 pub use mission::{Http, Mission, Options, Ready, Resumption, begin, resume};
 pub use run::Ended;
 pub use signals::stop_on_signals;
-pub use snapshot::{Next, Possible, Snapshot, snapshot};
+pub use snapshot::{Next, Possible, Snapshot};

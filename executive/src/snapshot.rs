@@ -47,7 +47,7 @@ pub struct Possible {
 }
 
 /// The mission as it stands. `internal` also shows the events that no user wrote.
-pub fn snapshot(executive: &mut Executive, now: Time, internal: bool) -> Snapshot {
+pub(crate) fn snapshot(executive: &mut Executive, now: Time, internal: bool) -> Snapshot {
     let upcoming = executive.upcoming();
     let execution = executive.execution(now, internal);
     let over = executive.is_over();
@@ -172,7 +172,7 @@ mod tests {
             again: None,
             reason: String::new(),
         };
-        assert_eq!(pending, [expected.clone()]);
+        assert_eq!(pending, std::slice::from_ref(&expected));
 
         executive.handle_failed(second(2), "run/scan:start", "no power");
         let failed = Pending { again: Some(second(3)), reason: "no power".to_string(), ..expected };

@@ -120,8 +120,9 @@ pub(crate) fn run(desk: &Desk, options: Options) -> io::Result<End> {
 /// A terminal and what is on it.
 struct Screen {
     color: bool,
-    terminal: Terminal,
+    // Dropped before the terminal: what it still has to say is for the screen, not for what comes after.
     shown: ratatui::Terminal<CrosstermBackend<Writer>>,
+    terminal: Terminal,
     size: (u16, u16),
     /// The second that is shown.
     second: i64,

@@ -10,21 +10,21 @@ use kirk_runtime::{Execution, Outcome, Plan, Scope, handovers};
 use crate::args::{Common, DriverEvents, Live, Resume, Run, StrategyName, TextOrJson};
 use crate::input::Input;
 use crate::json::line;
-use crate::output::{Status, complain, print, remark};
+use crate::live;
+use crate::output::{self, Status, complain, print, remark};
 use crate::timetable::timetable;
 use crate::watch;
 
 /// Executes a proven mission in real time.
 pub(crate) fn execute(arguments: &Run, common: &Common, input: &Input, plan: Plan) -> io::Result<Status> {
     let Some(network) = &input.network else { return Ok(Status::Wrong) };
-    let live = &arguments.live;
     let options = match options(arguments) {
         Ok(options) => options,
         Err(message) => return wrong(&message),
     };
     let activities = input.compilation.as_ref().and_then(|compilation| compilation.episodes.as_ref());
     let activities = activities.map(activities_of);
-    let scope = match live.driver_events {
+    let scope = match arguments.live.driver_events {
         DriverEvents::Starts => Scope::Starts,
         DriverEvents::All => Scope::All,
     };
@@ -37,9 +37,11 @@ pub(crate) fn execute(arguments: &Run, common: &Common, input: &Input, plan: Pla
     }
     let program = input.program(&arguments.selection);
     let mission = Mission { program, network: network.clone(), plan, handovers };
-    match begin(mission, options, live.journal.as_deref(), false) {
+    let screen = has_screen(common);
+    match begin(mission, options, arguments.live.journal.as_deref(), screen) {
         Ok(ready) => {
-            finish(ready, arguments.files.iter().any(|file| file == "-"), Show::of_run(arguments), common)
+            let stdin_taken = arguments.files.iter().any(|file| file == "-");
+            finish(ready, screen, stdin_taken, Show::of_run(arguments), common)
         }
         Err(message) => wrong(&message),
     }
@@ -54,8 +56,9 @@ pub(crate) fn resume(arguments: &Resume, common: &Common) -> io::Result<Status> 
         }
     };
     let show = Show { internal: arguments.internal, format: arguments.format };
-    match kirk_executive::resume(&arguments.journal, at, false, note) {
-        Ok(Resumption::Ready(ready)) => finish(*ready, false, show, common),
+    let screen = has_screen(common);
+    match kirk_executive::resume(&arguments.journal, at, screen, note) {
+        Ok(Resumption::Ready(ready)) => finish(*ready, screen, false, show, common),
         Ok(Resumption::Over(execution)) => {
             if !common.quiet {
                 remark("the mission is over; there is nothing to go on with");
@@ -88,16 +91,23 @@ impl Show {
     }
 }
 
-fn finish(ready: Ready, stdin_taken: bool, show: Show, common: &Common) -> io::Result<Status> {
-    if let (Some(address), false) = (ready.address(), common.quiet) {
-        remark(&format!("news is heard at http://{address}/"));
+fn finish(ready: Ready, screen: bool, stdin_taken: bool, show: Show, common: &Common) -> io::Result<Status> {
+    let address = ready.address().map(|address| format!("news is heard at http://{address}/"));
+    if let (Some(address), false) = (&address, common.quiet) {
+        remark(address);
     }
     let desk = ready.desk();
     kirk_executive::stop_on_signals(desk.clone());
-    let watching = (!common.quiet).then(|| watch::print(&desk));
-    if !stdin_taken {
-        watch::read_lines(desk);
-    }
+    let watching = if screen {
+        let options = live::Options { color: output::colors(common.color), greeting: address };
+        Some(watch::screen(desk, options))
+    } else {
+        let watching = (!common.quiet).then(|| watch::print(&desk));
+        if !stdin_taken && !live::is_in_background() {
+            watch::read_lines(desk);
+        }
+        watching
+    };
     let ended = ready.run(show.internal);
     if let Some(watching) = watching {
         // It ends when it has said that the mission is over.
@@ -107,6 +117,11 @@ fn finish(ready: Ready, stdin_taken: bool, show: Show, common: &Common) -> io::R
         say_lateness(&ended);
     }
     show.execution(&ended.execution)
+}
+
+/// True if the mission is shown on a screen, with a key for each event.
+fn has_screen(common: &Common) -> bool {
+    !common.quiet && live::is_there()
 }
 
 fn say_lateness(ended: &Ended) {

@@ -12,6 +12,7 @@ mod fmt;
 mod generate;
 mod input;
 mod json;
+mod live;
 mod lsp;
 mod news;
 mod output;

@@ -2,6 +2,8 @@
 
 use std::io::{self, Write};
 
+use crate::args::Color;
+
 /// The exit status of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
@@ -54,4 +56,13 @@ pub(crate) fn complain(message: &str) {
 pub(crate) fn remark(message: &str) {
     // If standard error is closed there is nobody to tell.
     let _ = writeln!(io::stderr().lock(), "{message}");
+}
+
+/// True if a terminal is to show colours: as asked for, or unless `NO_COLOR` asks for none.
+pub(crate) fn colors(asked: Color) -> bool {
+    match asked {
+        Color::Always => true,
+        Color::Never => false,
+        Color::Auto => std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty()),
+    }
 }

@@ -1,4 +1,5 @@
-//! A mission in real time without a screen: a line for everything that happens, and news from lines of standard input.
+//! Whoever watches a mission in real time: a screen, or a line for everything that happens and news from lines of standard
+//! input.
 
 use std::io::BufRead;
 use std::thread::JoinHandle;
@@ -6,6 +7,7 @@ use std::thread::JoinHandle;
 use kirk_executive::{AnswerNews, Desk, Happening};
 use serde::Deserialize;
 
+use crate::live;
 use crate::output::remark;
 use crate::timetable::cells;
 
@@ -26,6 +28,17 @@ pub(crate) fn print(desk: &Desk) -> JoinHandle<()> {
                 }
                 Err(tokio::sync::broadcast::error::RecvError::Closed) => return,
             }
+        }
+    })
+}
+
+/// Shows the mission on a screen until it is over; with lines, if the terminal turns out not to do.
+pub(crate) fn screen(desk: Desk, options: live::Options) -> JoinHandle<()> {
+    std::thread::spawn(move || {
+        if let Err(error) = live::run(&desk, options) {
+            remark(&format!("no screen: {error}"));
+            read_lines(desk.clone());
+            let _ = print(&desk).join();
         }
     })
 }

@@ -37,6 +37,9 @@ fn what_belongs_in_one_place_is_named_in_one_place() {
         ("codespan-reporting", "."),
         ("hyper", "executive"),
         ("subtle", "executive"),
+        ("crossterm", "."),
+        ("ratatui", "."),
+        ("signal-hook", "."),
     ] {
         for folder in [".", "compiler", "executive", "lsp", "network", "runtime"] {
             let named =

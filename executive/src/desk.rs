@@ -17,6 +17,7 @@ use tokio::sync::broadcast;
 use crate::clock::Clock;
 use crate::file::Ticket;
 use crate::happening::Happening;
+use crate::snapshot::Snapshot;
 
 /// Hands in messages.
 #[derive(Clone)]
@@ -53,6 +54,8 @@ pub(crate) enum Message {
     Synced { ticket: Ticket, result: std::io::Result<()> },
     /// Somebody wants to know how things are.
     State { reply: Reply<String> },
+    /// Somebody wants to look at the mission.
+    Look { reply: Reply<Snapshot> },
     /// Somebody wants the mission to end.
     Stop { reason: String },
 }
@@ -133,6 +136,11 @@ impl Desk {
     /// The execution as it stands, as `kirk-execution/1` in one line of JSON.
     pub fn state(&self, reply: Reply<String>) {
         let _ = self.inbox.send(Message::State { reply });
+    }
+
+    /// The mission as a person wants to see it. Whoever goes on looking asks again when the version has changed.
+    pub fn look(&self, reply: Reply<Snapshot>) {
+        let _ = self.inbox.send(Message::Look { reply });
     }
 
     /// Changes whenever the state does.

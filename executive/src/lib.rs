@@ -12,6 +12,7 @@ mod lateness;
 mod mission;
 mod run;
 mod signals;
+mod snapshot;
 
 pub use clock::{Clock, clocks};
 pub use desk::{AnswerNews, Desk, Ignored, Reply};
@@ -21,3 +22,4 @@ pub use lateness::Lateness;
 pub use mission::{Http, Mission, Options, Ready, Resumption, begin, resume};
 pub use run::Ended;
 pub use signals::stop_on_signals;
+pub use snapshot::{Next, Possible, Snapshot};

@@ -20,6 +20,7 @@ use crate::file::{JournalFile, Ticket};
 use crate::happening::Happening;
 use crate::lateness::Lateness;
 use crate::mission::Ready;
+use crate::snapshot::snapshot;
 
 /// What became of a mission.
 #[derive(Clone, Debug)]
@@ -176,6 +177,7 @@ impl Loop {
             }
             Message::Synced { result: Err(error), .. } => self.lose_journal(&error),
             Message::State { reply } => reply(self.state(now)),
+            Message::Look { reply } => reply(snapshot(&mut self.executive, now, false)),
             Message::Stop { reason } => self.stopped = Some(reason),
         }
         self.plan_anew(now);

@@ -367,10 +367,29 @@ impl Dispatcher {
         link.into_iter().chain(event).chain(over).min().map(|time| Time::from_micros(time.max(self.now)))
     }
 
+    /// What will be done next if nothing is heard: when, with which event, and how. `None` when nothing is left or all
+    /// depends on what is in flight.
+    pub fn upcoming(&mut self) -> Option<(Time, EventId, How)> {
+        if self.missed.is_some() {
+            return None;
+        }
+        let link = self.next_link().map(|(time, node, how)| (time, self.acted_on(node), how));
+        let event = self.agenda.next().map(|(_, node)| {
+            (self.agenda.due(node), self.reduction.event_of[node as usize], How::Dispatched)
+        });
+        let next = link.into_iter().chain(event).min_by_key(|&(time, ..)| time);
+        next.map(|(time, event, how)| (Time::from_micros(time.max(self.now)), event, how))
+    }
+
     /// The interval (microseconds) in which an event happened or will happen, given all that is known; `None` while its
     /// activation has not been executed.
     pub fn happened(&self, event: EventId) -> Option<(i64, i64)> {
         self.knowledge.happened(self.network(), event)
+    }
+
+    /// The same for all events.
+    pub fn all_happened(&self) -> Vec<Option<(i64, i64)>> {
+        self.knowledge.all_happened(self.network())
     }
 
     /// The same for all events at the end of an execution, when silence also says something: an event that was never
@@ -481,10 +500,15 @@ impl Dispatcher {
         ends.min_by_key(|&(time, node, _)| (time, node))
     }
 
+    /// The event whose news a contingent node of the plan stands for.
+    fn acted_on(&self, node: u32) -> EventId {
+        let root = self.reduction.event_of[node as usize];
+        self.reduction.places[root.index()].heard_by.unwrap_or(root)
+    }
+
     /// A contingent node happens: the plan goes on as if its news had come now.
     fn happen(&mut self, node: u32, time: i64, how: How) {
-        let root = self.reduction.event_of[node as usize];
-        let event = self.reduction.places[root.index()].heard_by.unwrap_or(root);
+        let event = self.acted_on(node);
         self.active.retain(|&(_, _, link)| self.reduction.stnu.links[link as usize].contingent != node);
         let place = self.reduction.places[event.index()];
         if how == How::Imagined {

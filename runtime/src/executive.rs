@@ -70,6 +70,21 @@ pub struct Sending {
     pub attempt: u32,
 }
 
+/// An event the driver was told of and has not confirmed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Pending {
+    /// The event, under one of its names.
+    pub name: String,
+    /// Until when it may be executed, if there is such a time.
+    pub latest: Option<Time>,
+    /// How often it was handed over.
+    pub attempts: u32,
+    /// When it is handed over again, if the last attempt failed.
+    pub again: Option<Time>,
+    /// Why the last attempt that failed did; empty if none has.
+    pub reason: String,
+}
+
 /// What became of news.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Answer {
@@ -284,6 +299,24 @@ impl Executive {
         let surely = self.unannounced.iter().filter_map(|&event| surely(&self.dispatcher, event));
         let soonest = retry.chain(surely).min();
         soonest.into_iter().chain(self.dispatcher.poll_timeout()).min()
+    }
+
+    /// What the driver was told of and has not confirmed, in the order in which it was told first.
+    pub fn pending(&self) -> Vec<Pending> {
+        let open = self.orders.iter().filter(|order| order.state != State::Done);
+        let pending = |order: &Order| Pending {
+            name: order.name.clone(),
+            latest: self.dispatcher.latest(order.event),
+            attempts: order.attempts,
+            again: order.state.wakes(),
+            reason: order.reason.clone(),
+        };
+        open.map(pending).collect()
+    }
+
+    /// What will be done next if nothing is heard: when, with which event, and how.
+    pub fn upcoming(&mut self) -> Option<(Time, EventId, How)> {
+        if self.over { None } else { self.dispatcher.upcoming() }
     }
 
     /// The execution as it stands.

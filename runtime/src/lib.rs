@@ -61,7 +61,7 @@ pub mod verify;
 pub use activity::{Handover, Scope, handovers, original_spelling};
 pub use dispatcher::{Dispatch, Dispatcher, Missed, Reception, Settings, Strategy};
 pub use execution::{Execution, Failure, How, Outcome, Row};
-pub use executive::{Answer, Executive, Output, Sending, Setup};
+pub use executive::{Answer, Executive, Output, Pending, Sending, Setup};
 pub use journal::{BadJournal, Clocks, Journal};
 pub use nature::{Impossible, Temper};
 pub use order::Patience;

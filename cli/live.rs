@@ -109,7 +109,7 @@ pub(crate) fn run(desk: &Desk, options: Options) -> io::Result<End> {
                     // The screen may be down when the answer comes.
                     desk.news(vec![event], Box::new(move |answer| drop(replies.send(answer))));
                 }
-                Action::Stop => desk.stop("it was stopped at the keyboard".to_string()),
+                Action::Stop => desk.stop("at the keyboard".to_string()),
                 Action::Leave => return Ok(End::Left),
                 Action::Redraw => screen.stale = true,
             }

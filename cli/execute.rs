@@ -83,9 +83,14 @@ impl Show {
 
     /// Prints an execution, and says by the exit status how it ended.
     pub(crate) fn execution(self, execution: &Execution) -> io::Result<Status> {
-        match self.format {
-            TextOrJson::Json => print(&line(execution)?)?,
-            TextOrJson::Text => print(&timetable(execution))?,
+        let text = match self.format {
+            TextOrJson::Json => line(execution)?,
+            TextOrJson::Text => timetable(execution),
+        };
+        match print(&text) {
+            // The terminal is gone; the mission was executed all the same.
+            Err(error) if error.raw_os_error() == Some(rustix::io::Errno::IO.raw_os_error()) => {}
+            printed => printed?,
         }
         Ok(if execution.outcome == Outcome::Completed { Status::Yes } else { Status::No })
     }

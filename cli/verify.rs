@@ -5,7 +5,8 @@ use std::io;
 use kirk_compiler::{Code, Diagnostic, Source, Span};
 use kirk_network::json::{ReadProblem, locate};
 use kirk_runtime::execution::FORMAT;
-use kirk_runtime::{Execution, verify as check};
+use kirk_runtime::journal::{self, is_journal};
+use kirk_runtime::{Execution, replay, verify as check};
 use serde::Serialize;
 
 use crate::args::{Common, Selection, TextOrJson, Verify};
@@ -77,6 +78,16 @@ fn read_execution(file: &str) -> Result<Execution, Box<(Source, Diagnostic)>> {
             Diagnostic::error(Code::CannotRead, Span::default(), message),
         ))
     })?;
+    if is_journal(&bytes) {
+        return journal::read(&bytes).and_then(|journal| replay(&journal, |_, _, _| {})).map_or_else(
+            |bad| {
+                let message = format!("this journal cannot be repeated: {bad}");
+                let diagnostic = Diagnostic::error(Code::BadRecord, Span::default(), message);
+                Err(Box::new((Source::new(shown(file), ""), diagnostic)))
+            },
+            |replayed| Ok(replayed.executive.execution(replayed.at, false)),
+        );
+    }
     let text = String::from_utf8_lossy(&bytes).into_owned();
     let read: Result<Execution, _> = serde_json::from_str(&text);
     if let Ok(execution) = &read

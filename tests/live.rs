@@ -234,6 +234,9 @@ fn a_mission_that_is_killed_at_every_step_goes_on_and_is_verified() {
     let execution = completed(&output);
     verified(&execution, DELIVERIES);
 
+    let checked = kirk(&["verify", journal, DELIVERIES, "-q"]);
+    assert_eq!(checked.status.code(), Some(0), "{}", stdout(&checked));
+
     // It is in the journal as it was, and nothing was handed over after it was confirmed.
     let replayed = kirk_replay(journal);
     assert_eq!(replayed, execution);

@@ -1,4 +1,4 @@
-//! The signals by which a mission is stopped from outside: interrupt, terminate, hang up.
+//! The signals by which a mission is stopped from outside: interrupt and terminate. That the terminal hangs up is no reason.
 
 use tokio::signal::unix::{SignalKind, signal};
 
@@ -9,9 +9,11 @@ pub fn stop_on_signals(desk: Desk) {
     let Ok(runtime) = tokio::runtime::Builder::new_current_thread().enable_all().build() else { return };
     std::thread::spawn(move || {
         runtime.block_on(async {
-            let (Ok(mut interrupt), Ok(mut terminate)) =
-                (signal(SignalKind::interrupt()), signal(SignalKind::terminate()))
-            else {
+            let (Ok(mut interrupt), Ok(mut terminate), Ok(mut hangup)) = (
+                signal(SignalKind::interrupt()),
+                signal(SignalKind::terminate()),
+                signal(SignalKind::hangup()),
+            ) else {
                 return;
             };
             let mut stopping = false;
@@ -19,6 +21,7 @@ pub fn stop_on_signals(desk: Desk) {
                 let name = tokio::select! {
                     _ = interrupt.recv() => "interrupt",
                     _ = terminate.recv() => "terminate",
+                    _ = hangup.recv() => continue,
                 };
                 if stopping {
                     std::process::exit(1);

@@ -462,12 +462,12 @@ impl Dispatcher {
         for event in self.plan.network().event_ids() {
             let known = *self.known(event);
             if known.settled && known.fixed.is_none() {
-                let how = match known.observed {
-                    Some(heard) if heard.as_micros() >= planned => How::Observed,
-                    Some(_) => How::Buffered,
-                    None => How::Imagined,
+                let (time, how) = match known.observed.map(Time::as_micros) {
+                    // Lateness of ours is not held against the news.
+                    Some(heard) if self.recorded(heard, planned) == heard => (heard, How::Observed),
+                    Some(_) => (planned, How::Buffered),
+                    None => (planned, How::Imagined),
                 };
-                let time = known.observed.map_or(planned, |heard| heard.as_micros().max(planned));
                 self.fix(event, time, how);
             }
         }

@@ -128,7 +128,7 @@ fn level(severity: Severity) -> &'static str {
 fn text(diagnostic: &Diagnostic) -> String {
     let mut text = diagnostic.message.clone();
     if let Some(help) = &diagnostic.help {
-        text.push_str("\n");
+        text.push('\n');
         text.push_str(help);
     }
     text

@@ -7,7 +7,9 @@ use serde::ser::{SerializeMap, SerializeSeq, Serializer};
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 
-use fields::{CONTINGENT, Content, REQUIREMENT, nearest, plainly};
+use fields::{CONTINGENT, Content, REQUIREMENT, nearest, problem};
+
+pub use fields::locate;
 
 use crate::controllability::Wait;
 use crate::dispatchable::Dispatchable;
@@ -402,34 +404,6 @@ impl<'a> Reader<'a> {
     fn offset(&self, raw: &RawValue) -> usize {
         (raw.get().as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize).min(self.text.len())
     }
-}
-
-/// Where and what an error of serde_json on `text` is.
-pub fn locate(text: &str, error: &serde_json::Error) -> ReadProblem {
-    problem(text, 0, "", text, error)
-}
-
-/// Words an error of serde_json, which counts lines and columns within `part` (that starts at `start` of `text`).
-fn problem(text: &str, start: usize, element: &str, part: &str, error: &serde_json::Error) -> ReadProblem {
-    if part.trim().is_empty() {
-        return ReadProblem {
-            offset: start,
-            message: "there is nothing here; a JSON document was expected".to_string(),
-        };
-    }
-    let line_start: usize =
-        part.split_inclusive('\n').take(error.line().saturating_sub(1)).map(str::len).sum::<usize>();
-    let mut offset = (start + line_start + error.column().saturating_sub(1)).min(text.len());
-    while !text.is_char_boundary(offset) {
-        offset -= 1;
-    }
-    let mut message = error.to_string();
-    if let Some(at) = message.rfind(" at line ") {
-        message.truncate(at);
-    }
-    let message = plainly(&message);
-    let message = if element.is_empty() { message } else { format!("{element}: {message}") };
-    ReadProblem { offset, message }
 }
 
 struct Document<'a>(&'a Network);

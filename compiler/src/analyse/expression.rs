@@ -155,7 +155,17 @@ impl Resolver<'_> {
             "infinity" | "inf" | "infinite" | "unbounded" | "∞" => Some(":infinity"),
             _ => nearest(&ident.name, variables.chain(numbers)),
         };
-        let help = near.map(|near| format!("Did you mean `{near}`?"));
+        let unit = match ident.name.as_str() {
+            "s" | "sec" | "secs" | "second" | "seconds" => Some("seconds"),
+            "min" | "mins" | "minute" | "minutes" => Some("minutes"),
+            "h" | "hour" | "hours" => Some("hours"),
+            "day" | "days" => Some("days"),
+            _ => None,
+        };
+        let help = match unit {
+            Some(unit) => Some(format!("A unit stands before its number, in a list with it: `({unit} 5)`.")),
+            None => near.map(|near| format!("Did you mean `{near}`?")),
+        };
         self.problems.push(
             Diagnostic::error(Code::UnknownName, ident.span, format!("nothing is called `{}`", clip(&ident.name)))
                 .primary("neither a parameter or variable here nor a named number")

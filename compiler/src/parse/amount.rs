@@ -107,7 +107,7 @@ fn kind(form: &Form, what: &str, unit: i64, problems: &mut Problems) -> AmountKi
 /// `(minutes 5)`, `(+ x 1)`.
 fn list(form: &Form, what: &str, problems: &mut Problems) -> AmountKind {
     let Some((word, rest)) = form.call() else {
-        problems.push(not_a_number(form, what));
+        problems.push(not_a_number(form, what).maybe_help(infix(form)));
         return AmountKind::Error;
     };
     let (least, most, example) = match (Operator::of(word), unit(word)) {
@@ -188,6 +188,13 @@ fn not_a_number(form: &Form, what: &str) -> Diagnostic {
         .maybe_help(unquoted)
 }
 
+/// Advice for `(5 + 3)`.
+fn infix(form: &Form) -> Option<String> {
+    let [left, operator, right] = form.list()? else { return None };
+    let word = operator.word().filter(|word| Operator::of(word).is_some())?;
+    Some(format!("The operator comes first: `({word} {} {})`.", super::text_of(left), super::text_of(right)))
+}
+
 /// Advice for `1:30`, which is read as a name in a package.
 fn clock(before: &str, after: &str) -> Option<String> {
     let (minutes, seconds): (u32, u32) = (before.parse().ok()?, after.parse().ok()?);
@@ -217,7 +224,8 @@ fn inexact(form: &Form, what: &str, text: &str, error: ParseDurationError) -> Di
 
 /// Advice for `15s`, `5min` and the like.
 fn suffix(name: &str) -> Option<String> {
-    let at = name.find(|c: char| !c.is_ascii_digit() && c != '.').filter(|at| *at > 0)?;
+    let other = |c: char| !c.is_ascii_digit() && c != '.';
+    let at = name.find("..").or_else(|| name.find(other)).filter(|at| *at > 0)?;
     let (digits, unit) = name.split_at(at);
     Some(match unit {
         "s" | "sec" | "secs" | "second" | "seconds" => {
@@ -226,6 +234,10 @@ fn suffix(name: &str) -> Option<String> {
         "m" | "min" | "mins" | "minute" | "minutes" => format!("Write `(minutes {digits})`."),
         "h" | "hr" | "hour" | "hours" => format!("Write `(hours {digits})`."),
         "d" | "day" | "days" => format!("Write `(days {digits})`."),
+        range if range.trim_start_matches(['-', '.']).starts_with(|c: char| c.is_ascii_digit()) => {
+            let most = range.trim_start_matches(['-', '.']);
+            format!("The shortest and the longest time are two numbers: `{digits}` and `{}`.", clip(most))
+        }
         _ => "Write seconds (`15`), a unit (`(minutes 5)`), a named number (`*wait*`) or `:infinity`."
             .to_string(),
     })

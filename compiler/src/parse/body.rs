@@ -28,6 +28,10 @@ pub(super) fn bodies(forms: &[Form], problems: &mut Problems) -> Vec<Body> {
     let mut found = Vec::new();
     let mut rest = forms.iter().peekable();
     while let Some(form) = rest.next() {
+        if form.keyword().is_some() {
+            // Its value belongs to the same slip.
+            rest.next_if(|next| next.list().is_none());
+        }
         // `shower()` and `drive(5)`, as calls are written elsewhere.
         let arguments = rest.next_if(|next| {
             let is_call = |items: &[Form]| items.first().is_some_and(|first| first.symbol().is_some());
@@ -104,6 +108,9 @@ fn call(form: &Form, first: &Form, rest: &[Form], problems: &mut Problems) -> Op
                     }
                     (FormKind::List(_), _) => {
                         "To do several things, write `(sequence (:slack t) ...)` around them.".to_string()
+                    }
+                    (FormKind::Keyword(name), _) if name == "slack" => {
+                        "Options stand before the body: `(sequence (:slack t) ...)`.".to_string()
                     }
                     (FormKind::String(text), _) => {
                         format!("Names have no quotation marks: `({} ...)`.", clip(text))
@@ -228,6 +235,9 @@ fn within(form: &Form, operator: &Form, rest: &[Form], problems: &mut Problems) 
     const SHAPE: &str = "Write `(with-temporal-constraint (simple-temporal :upper-bound 60) body...)`.";
     let mut limits = Bounds { lower: None, upper: None, span: operator.span };
     let mut rest = rest;
+    let slipped = rest.first().and_then(Form::call).is_some_and(|(_, inside)| {
+        inside.last().is_some_and(|last| last.list().is_some() && !is_calculation(last))
+    });
     match rest.split_first() {
         Some((first, _)) if first.keyword().is_some() => {
             let given = keywords(rest);
@@ -271,7 +281,8 @@ fn within(form: &Form, operator: &Form, rest: &[Form], problems: &mut Problems) 
             .help(SHAPE),
         ),
     }
-    if rest.is_empty() {
+    // A body that stands inside of the constraint has been reported.
+    if rest.is_empty() && !slipped {
         problems.push(
             Diagnostic::error(
                 Code::WrongShape,

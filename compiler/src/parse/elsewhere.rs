@@ -26,6 +26,9 @@ pub(crate) fn instead_of_operator(word: &str) -> Option<&'static str> {
         "lambda" | "funcall" | "apply" | "format" | "print" => {
             "A body only says what is done when; kirk runs no Lisp."
         }
+        "start" | "end" => {
+            "An event is no activity; it is named in a constraint: `(between (end a) (start b) (simple-temporal :lower-bound 5))`."
+        }
         "primitive" | "duration" | "requires" | "effect" => {
             "This is a declaration: it belongs into the `(declare ...)` of the program."
         }

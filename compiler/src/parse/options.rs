@@ -1,6 +1,6 @@
 //! Keyword arguments: `:lower-bound 15 :upper-bound 20`.
 
-use super::amount::is_unit;
+use super::amount::{is_calculation, is_unit};
 use super::{twice, unexpected};
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
@@ -156,6 +156,9 @@ fn no_keyword(form: &Form, last: Option<&Form>, forms: &[Form], known: &[&str], 
     let help = match (last.map(|form| &form.kind), form.word(), numbers.as_slice()) {
         (Some(FormKind::Number(number)), Some(word), _) if is_unit(word) => {
             Some(format!("A unit stands before its number: `({word} {})`.", clip(number)))
+        }
+        _ if form.call().is_some_and(|_| !is_calculation(form)) && last.is_some() => {
+            Some("Is a `)` missing before it?".to_string())
         }
         (None, _, [both]) if known.contains(&"upper-bound") => {
             Some(format!("Every bound has its keyword: `({owner} :lower-bound {both} :upper-bound {both})`."))

@@ -57,6 +57,10 @@ pub(super) fn foreign_line(line: &str) -> Option<&'static str> {
         "what was typed at a shell prompt"
     } else if starts(&["kirk run", "kirk check", "kirk compile", "cargo ", "git ", "sudo ", "curl "]) {
         "a command for the shell"
+    } else if starts(&["<<<<<<<", "=======", ">>>>>>>", "|||||||"]) {
+        "the mark of a merge that has not been settled"
+    } else if starts(&["--- ", "+++ ", "@@ ", "diff "]) {
+        "part of a patch"
     } else if starts(&["<?xml", "<graphml"]) {
         "XML"
     } else if starts(&["<!DOCTYPE", "<!doctype", "<html"]) {

@@ -2,6 +2,7 @@
 
 use serde_json::value::RawValue;
 
+use super::ReadProblem;
 use crate::time::{Duration, ParseDurationError};
 
 /// What a field may hold.
@@ -70,8 +71,42 @@ fn clipped(value: &str) -> String {
     }
 }
 
+/// Where and what an error of serde_json on `text` is.
+pub fn locate(text: &str, error: &serde_json::Error) -> ReadProblem {
+    problem(text, 0, "", text, error)
+}
+
+/// Words an error of serde_json, which counts lines and columns within `part` (that starts at `start` of `text`).
+pub(super) fn problem(
+    text: &str,
+    start: usize,
+    element: &str,
+    part: &str,
+    error: &serde_json::Error,
+) -> ReadProblem {
+    if part.trim().is_empty() {
+        return ReadProblem {
+            offset: start,
+            message: "there is nothing here; a JSON document was expected".to_string(),
+        };
+    }
+    let line_start: usize =
+        part.split_inclusive('\n').take(error.line().saturating_sub(1)).map(str::len).sum::<usize>();
+    let mut offset = (start + line_start + error.column().saturating_sub(1)).min(text.len());
+    while !text.is_char_boundary(offset) {
+        offset -= 1;
+    }
+    let mut message = error.to_string();
+    if let Some(at) = message.rfind(" at line ") {
+        message.truncate(at);
+    }
+    let message = plainly(&message);
+    let message = if element.is_empty() { message } else { format!("{element}: {message}") };
+    ReadProblem { offset, message }
+}
+
 /// A message of serde_json in the words of kirk: what was expected, and what is there.
-pub(super) fn plainly(message: &str) -> String {
+fn plainly(message: &str) -> String {
     let thing = |words: &str| match words {
         "map" => "an object".to_string(),
         "sequence" | "a sequence" => "a list".to_string(),

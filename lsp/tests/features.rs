@@ -38,6 +38,7 @@ fn hover_says_what_a_program_is_and_when_it_happens() {
         ("(seq^uence", "operator"),
         (":upper-bou^nd *limit*", "keyword"),
         ("(:sla^ck t)", "keyword_in_a_list"),
+        ("(^with-temporal-constraint", "operator_at_its_first_character"),
         ("*lim^it*", "named_number"),
         ("upper-bound le^ngth", "parameter"),
     ] {

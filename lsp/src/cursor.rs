@@ -5,13 +5,11 @@ use kirk_compiler::Span;
 use kirk_compiler::read::{Kind, Token, tokens};
 
 /// The place in a text.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub(crate) struct Cursor<'a> {
     /// The forms open here, the outermost first.
     pub(crate) open: Vec<Open<'a>>,
-    /// What is written of the word at the cursor.
-    pub(crate) prefix: &'a str,
-    /// That word, to be replaced.
+    /// The word at the cursor, empty if there is none.
     pub(crate) word: Span,
     /// True if the last thing before the word is a `(`: the word is the first of its form.
     pub(crate) first: bool,
@@ -20,14 +18,12 @@ pub(crate) struct Cursor<'a> {
 }
 
 /// A form that is open.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub(crate) struct Open<'a> {
     /// Its first word as written; empty if it begins with something else, or with nothing yet.
     pub(crate) head: &'a str,
     /// How many elements stand before the cursor, its head counted, the word at the cursor not.
     pub(crate) before: usize,
-    /// Where it begins.
-    pub(crate) start: usize,
 }
 
 /// Looks at a place; `None` inside of strings and comments.
@@ -37,13 +33,8 @@ pub(crate) fn cursor(text: &str, offset: u32) -> Option<Cursor<'_>> {
     if comments(text, &tokens).iter().any(|comment| inside_comment(text, *comment, offset)) {
         return None;
     }
-    let mut cursor = Cursor {
-        open: Vec::new(),
-        prefix: "",
-        word: Span::new(0, offset, offset),
-        first: false,
-        keyword: None,
-    };
+    let mut cursor =
+        Cursor { open: Vec::new(), word: Span::new(0, offset, offset), first: false, keyword: None };
     for token in tokens.iter().take_while(|token| token.start < offset) {
         let written = &text[token.start..token.end];
         match token.kind {
@@ -57,7 +48,7 @@ pub(crate) fn cursor(text: &str, offset: u32) -> Option<Cursor<'_>> {
                     cursor.open.clear();
                 }
                 cursor.count();
-                cursor.open.push(Open { head: "", before: 0, start: token.start });
+                cursor.open.push(Open { head: "", before: 0 });
                 (cursor.first, cursor.keyword) = (true, None);
                 continue;
             }
@@ -65,7 +56,6 @@ pub(crate) fn cursor(text: &str, offset: u32) -> Option<Cursor<'_>> {
                 cursor.open.pop();
             }
             Kind::Symbol | Kind::Keyword | Kind::Number | Kind::Uninterned if offset <= token.end => {
-                cursor.prefix = &text[token.start..offset];
                 cursor.word = Span::new(0, token.start, token.end);
                 break;
             }
@@ -81,6 +71,13 @@ pub(crate) fn cursor(text: &str, offset: u32) -> Option<Cursor<'_>> {
         cursor.keyword = (token.kind == Kind::Keyword).then(|| written[1..].to_lowercase());
     }
     Some(cursor)
+}
+
+/// Looks at a place that is pointed at: the word that begins there counts as well as the one that ends there.
+pub(crate) fn pointed_at(text: &str, offset: u32) -> Option<Cursor<'_>> {
+    let next = text.get(offset as usize..)?.chars().next().map_or(0, char::len_utf8) as u32;
+    let here = cursor(text, offset).filter(|here| here.word.start < here.word.end);
+    here.or_else(|| cursor(text, offset + next))
 }
 
 impl Cursor<'_> {
@@ -193,7 +190,8 @@ mod tests {
             Some(cursor) => {
                 let open: Vec<String> =
                     cursor.open.iter().map(|open| format!("{}/{}", open.head, open.before)).collect();
-                format!("{} | {}{}", open.join(" "), if cursor.first { "(" } else { "" }, cursor.prefix)
+                let word = &text[cursor.word.start as usize..offset];
+                format!("{} | {}{word}", open.join(" "), if cursor.first { "(" } else { "" })
             }
         }
     }

@@ -7,7 +7,7 @@ use kirk_network::news::{Treatment, treatments};
 use kirk_network::windows::Window;
 
 use crate::analysis::Analysis;
-use crate::cursor::cursor;
+use crate::cursor::pointed_at;
 use crate::mission::{Mission, Occurrence};
 use crate::view::View;
 use crate::vocabulary::{keywords, word};
@@ -45,7 +45,7 @@ pub fn hover(view: &View, offset: u32) -> Option<Hover> {
 /// What there is to know about a word of the language, and when its form happens.
 fn word_at(view: &View, offset: u32) -> Option<Hover> {
     let analysis = &*view.analysis;
-    let cursor = cursor(analysis.text(), offset)?;
+    let cursor = pointed_at(analysis.text(), offset)?;
     let written = analysis.source.slice(cursor.word);
     let Some(word) = word(written).filter(|_| cursor.first) else {
         let name = written.strip_prefix(':')?.to_lowercase();

@@ -6,14 +6,15 @@ use kirk_compiler::read::{Kind, tokens};
 use kirk_compiler::{Place, Span, Symbol, SymbolKind, Symbols};
 
 use crate::analysis::{Analysis, analyse};
-use crate::cursor::cursor;
+use crate::cursor::pointed_at;
 use crate::definition::bare;
 use crate::vocabulary::word;
 
 /// The name at an offset that can be changed.
 pub fn prepare_rename(analysis: &Analysis, offset: u32) -> Result<Span, String> {
     let Some((symbol, place)) = analysis.symbols.at(0, offset) else {
-        let written = cursor(analysis.text(), offset).map_or("", |cursor| analysis.source.slice(cursor.word));
+        let written =
+            pointed_at(analysis.text(), offset).map_or("", |cursor| analysis.source.slice(cursor.word));
         let is_number = matches!(tokens(written).as_slice(), [one] if one.kind == Kind::Number);
         return Err(match written {
             "" => "There is no name here.".to_string(),

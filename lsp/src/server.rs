@@ -140,7 +140,7 @@ impl Server {
                     Ok(event) => event,
                     Err(RecvTimeoutError::Disconnected) => Event::End,
                     Err(RecvTimeoutError::Timeout) => {
-                        self.publish_held_back();
+                        self.guarded(Server::publish_held_back);
                         continue;
                     }
                 },
@@ -159,18 +159,22 @@ impl Server {
                         if notification.method == notification::Exit::METHOD {
                             return self.state == State::ShutDown;
                         }
-                        let handled = catch_unwind(AssertUnwindSafe(|| self.notification(notification)));
-                        if handled.is_err() {
-                            self.log("kirk could not follow a change: this is a bug in kirk");
-                        }
+                        self.guarded(|server| server.notification(notification));
                     }
                     // Answers to what was asked of the client: nothing depends on them.
                     Event::Incoming(Incoming::Message(Message::Response(_))) => {}
-                    Event::Judged(verdicts) => self.judged(verdicts),
+                    Event::Judged(verdicts) => self.guarded(|server| server.judged(verdicts)),
                     Event::End => return self.state == State::ShutDown,
                 }
             }
-            self.hand_on();
+            self.guarded(Server::hand_on);
+        }
+    }
+
+    /// Does something that must not end the session, whatever is wrong with it.
+    fn guarded(&mut self, work: impl FnOnce(&mut Server)) {
+        if catch_unwind(AssertUnwindSafe(|| work(self))).is_err() {
+            self.log("kirk could not follow a change: this is a bug in kirk");
         }
     }
 

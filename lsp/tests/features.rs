@@ -38,6 +38,7 @@ fn hover_says_what_a_program_is_and_when_it_happens() {
         ("(seq^uence", "operator"),
         (":upper-bou^nd *limit*", "keyword"),
         ("(:sla^ck t)", "keyword_in_a_list"),
+        ("(^with-temporal-constraint", "operator_at_its_first_character"),
         ("*lim^it*", "named_number"),
         ("upper-bound le^ngth", "parameter"),
     ] {
@@ -395,7 +396,10 @@ fn actions_put_slips_right() {
   (sequnce (:slack t)
     (hopp) (skip)
     (fly 1 2)
-    (listen)))
+    (parallel (:slak t) (listen))))
+(defclass rover () ((place :type (member \"base\" \"rock\") :accessor place)))
+(define-control-program go (who)
+  (declare (primitive) (requires (at :start (= (place who) \"bose\")))))
 ";
     shows!("actions_on_slips", text, acted(text));
 }

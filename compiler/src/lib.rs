@@ -90,7 +90,6 @@ pub use diagnostic::{Diagnostic, Label, Severity};
 pub use explain::explain_conflict;
 pub use format::format;
 pub use lower::{Origin, OriginKind, Origins, Plan};
-pub use notes::{notes_on_bounds, notes_on_latency, notes_on_merging};
 pub use sexpr::to_sexpr;
 pub use source::{LineIndex, Source, Span};
 
@@ -142,9 +141,7 @@ pub fn compile(sources: &[Source], options: &Options) -> Compilation {
         && let Some(root) = &episodes
         && let Some(lowered) = lower::lower(root)
     {
-        let merging = notes::notes_on_merging(&lowered.network, &lowered.origins, root);
-        let latency = notes::notes_on_latency(&lowered.network, &lowered.origins, root);
-        for note in notes::notes_on_bounds(root).into_iter().chain(merging).chain(latency) {
+        for note in notes::notes(&lowered, root) {
             problems.push(note);
         }
         plan = Some(lowered);

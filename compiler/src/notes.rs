@@ -3,8 +3,8 @@
 mod bounds;
 mod latency;
 
-pub use bounds::notes_on_bounds;
-pub use latency::notes_on_latency;
+use bounds::notes_on_bounds;
+use latency::notes_on_latency;
 
 use std::collections::BTreeMap;
 
@@ -14,13 +14,22 @@ use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::episode::{Episode, Kind};
 use crate::form::clip;
-use crate::lower::{Origins, events_of};
+use crate::lower::{Origins, Plan, events_of};
 use crate::source::Span;
+
+/// All notes on a program that was unfolded and lowered.
+pub fn notes(plan: &Plan, root: &Episode) -> Vec<Diagnostic> {
+    let Plan { network, origins, .. } = plan;
+    let mut notes = notes_on_bounds(root);
+    notes.extend(notes_on_merging(network, origins, root));
+    notes.extend(notes_on_latency(network, origins, root));
+    notes
+}
 
 /// Notes the activities that start at the true end of one whose end is heard late.
 ///
 /// "At the same time" makes the two events one, so the start happens when the end does, and not when it is heard.
-pub fn notes_on_merging(network: &Network, origins: &Origins, root: &Episode) -> Vec<Diagnostic> {
+fn notes_on_merging(network: &Network, origins: &Origins, root: &Episode) -> Vec<Diagnostic> {
     let mut classes = Classes { parent: (0..network.events().len() as u32).collect() };
     for requirement in network.requirements() {
         let zero = Bound::Finite(Duration::ZERO);

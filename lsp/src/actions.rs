@@ -31,7 +31,7 @@ pub fn actions(view: &View, problems: &[Diagnostic]) -> Vec<Action> {
         let mut offer = |fix: Option<(String, Vec<(Span, String)>)>| {
             found.extend(fix.map(|(title, edits)| Action { title, problem, edits }));
         };
-        offer(did_you_mean(analysis, diagnostic));
+        did_you_mean(analysis, diagnostic).into_iter().for_each(|fix| offer(Some(fix)));
         match diagnostic.code {
             Code::UnknownProgram => offer(create(analysis, diagnostic)),
             Code::DelayNotContingent => offer(make_contingent(analysis, diagnostic)),
@@ -54,24 +54,27 @@ pub fn actions(view: &View, problems: &[Diagnostic]) -> Vec<Action> {
 
 type Fix = (String, Vec<(Span, String)>);
 
-/// The name that was probably meant instead of the one at the place of the problem.
-fn did_you_mean(analysis: &Analysis, diagnostic: &Diagnostic) -> Option<Fix> {
-    let help = diagnostic.help.as_deref()?;
-    let (_, rest) = help.split_once("Did you mean ")?;
-    // A name is quoted in one way, a string in the other.
-    let meant = match rest.strip_prefix('`') {
-        Some(rest) => rest.split_once('`')?.0,
-        None => rest.split_once('?')?.0.trim().strip_prefix('"').and(rest.split_once('?'))?.0,
-    };
+/// The names that were probably meant instead of the one at the place of the problem.
+fn did_you_mean(analysis: &Analysis, diagnostic: &Diagnostic) -> Vec<Fix> {
+    let question = diagnostic.help.as_deref().and_then(|help| help.split_once("Did you mean "));
+    let Some((question, _)) = question.and_then(|(_, rest)| rest.split_once('?')) else { return Vec::new() };
     let written = analysis.source.slice(diagnostic.span);
     let is_one_word =
         !written.is_empty() && !written.contains(|c: char| c.is_whitespace() || "()".contains(c));
-    if !is_one_word || meant.starts_with("--") {
-        return None;
+    if !is_one_word {
+        return Vec::new();
     }
-    let both_have = |mark: char| meant.contains(mark) || !written.contains(mark);
-    let span = if both_have(':') { diagnostic.span } else { bare(analysis, diagnostic.span) };
-    Some((format!("Change to `{meant}`"), vec![(span, meant.to_string())]))
+    // Names are quoted in one way, strings, quotation marks and all, in another.
+    let meant: Vec<&str> = match question.starts_with('"') {
+        true => vec![question],
+        false => question.split('`').skip(1).step_by(2).collect(),
+    };
+    let fix = |meant: &str| {
+        let whole = meant.contains(':') || !written.contains(':');
+        let span = if whole { diagnostic.span } else { bare(analysis, diagnostic.span) };
+        (format!("Change to `{meant}`"), vec![(span, meant.to_string())])
+    };
+    meant.into_iter().filter(|meant| !meant.starts_with("--")).map(fix).collect()
 }
 
 /// A definition of the program that is called and does not exist, behind the one that calls it.

@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use kirk_compiler::episode::{Episode, Kind};
 use kirk_compiler::expand::expand;
 use kirk_compiler::lower::{events_of, lower};
+use kirk_compiler::notes::notes;
 use kirk_compiler::problem::Problems;
-use kirk_compiler::{Code, Diagnostic, Plan, Span, explain_conflict, notes_on_bounds, notes_on_merging};
+use kirk_compiler::{Code, Diagnostic, Plan, Span, explain_conflict};
 use kirk_network::windows::{Window, windows};
 use kirk_network::{Conflict, EventId, Verdict, check};
 
@@ -68,9 +69,9 @@ pub fn judge(unjudged: Unjudged) -> (Vec<Mission>, Vec<Diagnostic>) {
             continue;
         }
         let Some(plan) = lower(&episodes) else { continue };
-        let merging = notes_on_merging(&plan.network, &plan.origins, &episodes);
+        let notes = notes(&plan, &episodes);
         let (mission, verdict) = mission(&episodes, plan);
-        for diagnostic in notes_on_bounds(&episodes).into_iter().chain(merging).chain(verdict) {
+        for diagnostic in notes.into_iter().chain(verdict) {
             problems.push(diagnostic);
         }
         missions.push(mission);

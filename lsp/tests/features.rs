@@ -395,7 +395,10 @@ fn actions_put_slips_right() {
   (sequnce (:slack t)
     (hopp) (skip)
     (fly 1 2)
-    (listen)))
+    (parallel (:slak t) (listen))))
+(defclass rover () ((place :type (member \"base\" \"rock\") :accessor place)))
+(define-control-program go (who)
+  (declare (primitive) (requires (at :start (= (place who) \"bose\")))))
 ";
     shows!("actions_on_slips", text, acted(text));
 }

@@ -8,7 +8,7 @@ use crate::episode::{Episode, Interval, Kind};
 use crate::form::clip;
 
 /// Notes news that tells nothing, and upper bounds that are never reached.
-pub fn notes_on_bounds(root: &Episode) -> Vec<Diagnostic> {
+pub(super) fn notes_on_bounds(root: &Episode) -> Vec<Diagnostic> {
     let mut notes = Vec::new();
     longest(root, &mut notes);
     notes

@@ -19,7 +19,7 @@ const MOST_EVENTS: usize = 20_000;
 const MOST_NOTES: usize = 10;
 
 /// Notes the activities of a controllable program whose earliest start is their latest. The network is not merged.
-pub fn notes_on_latency(network: &Network, origins: &Origins, root: &Episode) -> Vec<Diagnostic> {
+pub(super) fn notes_on_latency(network: &Network, origins: &Origins, root: &Episode) -> Vec<Diagnostic> {
     if network.events().len() > MOST_EVENTS {
         return Vec::new();
     }

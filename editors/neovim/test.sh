@@ -1,0 +1,8 @@
+#!/bin/sh
+# The tests of the files here, in a real Neovim without a screen: `KIRK=... editors/neovim/test.sh`. KIRK is the kirk to use,
+# by default the one that `cargo build` or `cargo test` left.
+set -eu
+here=$(cd "$(dirname "$0")" && pwd)
+kirk=${KIRK:-$here/../../target/debug/kirk}
+exec timeout 300 nvim --clean --headless -n -i NONE \
+  --cmd "let g:kirk_path = '$kirk'" --cmd "set runtimepath^=$here" -S "$here/test.lua" </dev/null

@@ -4,5 +4,5 @@
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 kirk=${KIRK:-$here/../../target/debug/kirk}
-exec timeout 300 nvim --clean --headless -n -i NONE \
+exec timeout 300 "${NVIM:-nvim}" --clean --headless -n -i NONE \
   --cmd "let g:kirk_path = '$kirk'" --cmd "set runtimepath^=$here" -S "$here/test.lua" </dev/null

@@ -78,6 +78,19 @@ local tests = {
     end,
   },
   {
+    "nothing is indented within a string or a block comment",
+    function()
+      vim.cmd("enew! | setfiletype rmpl")
+      vim.api.nvim_feedkeys('i(define-control-program a ()\r"One\r\rtwo."\r(eat))', "xt", false)
+      local typed = { "(define-control-program a ()", '  "One', "", '  two."', "  (eat))" }
+      same(typed, lines(), "what was typed")
+      local text = { "#| a", "      b |#", "(define-control-program a ()", '  "One', "", ' two"', "  (eat))" }
+      vim.api.nvim_buf_set_lines(0, 0, -1, false, text)
+      vim.cmd("silent normal! gg=G")
+      same(text, lines(), "what was laid out")
+    end,
+  },
+  {
     "words have the colours of their kind",
     function()
       vim.cmd("enew! | setfiletype rmpl")

@@ -26,7 +26,12 @@ test("the package has every file that is contributed, and no others than these a
     encoding: "utf8",
   });
   const packaged = listed.split("\n").filter((line) => /^[\w./-]+$/.test(line) && fs.existsSync(path.join(home, line)));
-  assert.deepStrictEqual(packaged.sort(), [...contributed, "LICENSE", "README.md", "package.json"].sort());
+  assert.deepStrictEqual(packaged.sort(), [...contributed, "LICENSE", "README.md", "dist/LICENSES.txt", "package.json"].sort());
+});
+
+test("the licence of every package that is in the extension is with it", () => {
+  const licences = read("dist/LICENSES.txt");
+  for (const name of ["vscode-languageclient", "vscode-jsonrpc", "semver"]) assert.match(licences, new RegExp(`^${name} \\d`, "m"));
 });
 
 test("every file of the configuration is JSON", () => {

@@ -62,6 +62,26 @@
       (search-forward piece)
       (should (equal (list piece (get-text-property (match-beginning 0) 'face)) (list piece face))))))
 
+;; A row of the table there: what it is, and examples between backquotes.
+(ert-deftest rmpl-every-example-of-the-grammar-has-the-colour-of-its-kind ()
+  (let ((checked 0))
+    (with-temp-buffer
+      (insert-file-contents (expand-file-name "grammar/README.md" rmpl-tests-project))
+      (search-forward "## Top level")
+      (while (re-search-forward "^| \\([^|\n]+?\\) | \\(.+\\) |$" nil t)
+        (let ((what (match-string 1)) (examples (match-string 2)) (start 0))
+          (while (string-match "`\\(([^`]*)\\)`" examples start)
+            (setq start (match-end 0) checked (1+ checked))
+            (let* ((example (match-string 1 examples))
+                   (face (with-temp-buffer
+                           (insert example)
+                           (rmpl-mode)
+                           (font-lock-ensure)
+                           (get-text-property 2 'face))))
+              (should (equal (list example (equal what "call"))
+                             (list example (eq face 'font-lock-function-name-face)))))))))
+    (should (> checked 30))))
+
 (ert-deftest rmpl-compile-finds-the-error ()
   (require 'compile)
   (with-current-buffer (find-file-noselect (rmpl-tests-example "too-late.rmpl"))

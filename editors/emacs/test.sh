@@ -5,6 +5,7 @@ set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 KIRK=${KIRK:-$here/../../target/debug/kirk}
 export KIRK
+[ -x "$KIRK" ] || { echo "there is no $KIRK: run cargo build first, or set KIRK" >&2; exit 2; }
 compiled=$(mktemp -d)
 trap 'rm -rf "$compiled"' EXIT
 cp "$here/rmpl-mode.el" "$compiled"

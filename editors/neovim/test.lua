@@ -118,6 +118,23 @@ local tests = {
     end,
   },
   {
+    "every example of the grammar has the colour of its kind",
+    function()
+      local readme = table.concat(vim.fn.readfile(project .. "/grammar/README.md"), "\n")
+      local checked = 0
+      for what, examples in readme:sub((readme:find("## Top level", 1, true))):gmatch("\n| ([^|\n]+) | ([^\n]+) |") do
+        for example in examples:gmatch("`(%b())`") do
+          vim.cmd("enew! | setfiletype rmpl")
+          vim.api.nvim_buf_set_lines(0, 0, -1, false, { example })
+          local group = vim.fn.synIDattr(vim.fn.synID(1, 2, 1), "name")
+          same(what == "call", group == "rmplCall", ("%s: %s is %s, a call"):format(what, example, group))
+          checked = checked + 1
+        end
+      end
+      assert(checked > 30, checked)
+    end,
+  },
+  {
     "a mission that cannot be promised is an error at `main`",
     function()
       open("examples/rmpl/too-late.rmpl")

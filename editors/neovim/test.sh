@@ -4,5 +4,6 @@
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 kirk=${KIRK:-$here/../../target/debug/kirk}
+[ -x "$kirk" ] || { echo "there is no $kirk: run cargo build first, or set KIRK" >&2; exit 2; }
 exec timeout 300 "${NVIM:-nvim}" --clean --headless -n -i NONE \
   --cmd "let g:kirk_path = '$kirk'" --cmd "set runtimepath^=$here" -S "$here/test.lua" </dev/null

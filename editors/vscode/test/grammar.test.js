@@ -3,22 +3,9 @@ const assert = require("node:assert");
 const fs = require("node:fs");
 const path = require("node:path");
 const { test } = require("node:test");
-const oniguruma = require("vscode-oniguruma");
-const textmate = require("vscode-textmate");
+const { tokenize } = require("./textmate");
 
 const project = path.join(__dirname, "..", "..", "..");
-
-const wasm = fs.readFileSync(require.resolve("vscode-oniguruma/release/onig.wasm"));
-const registry = new textmate.Registry({
-  onigLib: oniguruma.loadWASM(wasm).then(() => ({
-    createOnigScanner: (patterns) => new oniguruma.OnigScanner(patterns),
-    createOnigString: (text) => new oniguruma.OnigString(text),
-  })),
-  loadGrammar: async () => {
-    const file = path.join(__dirname, "..", "syntaxes", "rmpl.tmLanguage.json");
-    return textmate.parseRawGrammar(fs.readFileSync(file, "utf8"), file);
-  },
-});
 
 /**
  * The pieces of a text that are not blank, each with its innermost scope.
@@ -26,20 +13,15 @@ const registry = new textmate.Registry({
  * @returns {Promise<{text: string, scope: string, line: number}[]>}
  */
 async function pieces(text) {
-  const grammar = await registry.loadGrammar("source.rmpl");
-  assert(grammar);
-  let stack = textmate.INITIAL;
-  const found = [];
-  for (const [line, content] of text.split(/\r?\n/).entries()) {
-    const { tokens, ruleStack } = grammar.tokenizeLine(content, stack);
-    stack = ruleStack;
-    for (const token of tokens) {
+  const lines = text.split(/\r?\n/);
+  const tokens = await tokenize(lines);
+  return lines.flatMap((content, line) =>
+    tokens[line].flatMap((token) => {
       const piece = content.slice(token.startIndex, token.endIndex).trim();
       const scope = token.scopes[token.scopes.length - 1].replace(/\.rmpl$/, "");
-      if (piece) found.push({ text: piece, scope, line: line + 1 });
-    }
-  }
-  return found;
+      return piece ? [{ text: piece, scope, line: line + 1 }] : [];
+    }),
+  );
 }
 
 /**

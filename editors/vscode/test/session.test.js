@@ -1,19 +1,15 @@
 // A session with `kirk lsp` over the protocol, as the extension's client has it: every feature once, on the examples.
-// The kirk is that of the environment variable KIRK, else the one that `cargo build` or `cargo test` left here.
 const assert = require("node:assert");
-const { spawn } = require("node:child_process");
-const { once } = require("node:events");
 const fs = require("node:fs");
 const path = require("node:path");
 const { after, before, test } = require("node:test");
 const { pathToFileURL } = require("node:url");
 const lsp = require("vscode-languageserver-protocol/node");
+const { open, project, start } = require("./server");
 
-const project = path.join(__dirname, "..", "..", "..");
-const kirk = process.env.KIRK ?? path.join(project, "target", "debug", "kirk");
 const late = path.join(project, "examples", "rmpl", "too-late.rmpl");
 
-/** @type {import("node:child_process").ChildProcessWithoutNullStreams} */
+/** @type {Awaited<ReturnType<typeof start>>} */
 let server;
 /** @type {lsp.ProtocolConnection} */
 let connection;
@@ -23,32 +19,16 @@ let heard = () => {};
 let version = 0;
 
 before(async () => {
-  assert(fs.existsSync(kirk), `${kirk} is not there: run \`cargo build\` first, or set KIRK`);
-  server = spawn(kirk, ["lsp"]);
-  connection = lsp.createProtocolConnection(server.stdout, server.stdin);
+  server = await start({ textDocument: { publishDiagnostics: { relatedInformation: true, versionSupport: true } } });
+  connection = server.connection;
   connection.onNotification(lsp.PublishDiagnosticsNotification.type, (params) => {
     published.push(params);
     heard();
   });
-  for (const refresh of [lsp.InlayHintRefreshRequest.type, lsp.CodeLensRefreshRequest.type]) connection.onRequest(refresh, () => {});
-  connection.listen();
-  const { capabilities, serverInfo } = await connection.sendRequest(lsp.InitializeRequest.type, {
-    processId: process.pid,
-    rootUri: pathToFileURL(project).href,
-    capabilities: { textDocument: { publishDiagnostics: { relatedInformation: true, versionSupport: true } } },
-  });
-  assert.strictEqual(serverInfo?.name, "kirk");
-  assert(capabilities.hoverProvider && capabilities.definitionProvider);
-  await connection.sendNotification(lsp.InitializedNotification.type, {});
+  assert.strictEqual(server.result.serverInfo?.name, "kirk");
 });
 
-after(async () => {
-  await connection.sendRequest(lsp.ShutdownRequest.type);
-  await connection.sendNotification(lsp.ExitNotification.type);
-  const [code] = await once(server, "exit");
-  connection.dispose();
-  assert.strictEqual(code, 0, "the server takes leave");
-});
+after(() => server.leave());
 
 /**
  * The diagnostics of a document as soon as they are as wanted.
@@ -79,9 +59,7 @@ async function show(uri, text) {
       contentChanges: [{ text }],
     });
   } else {
-    await connection.sendNotification(lsp.DidOpenTextDocumentNotification.type, {
-      textDocument: { uri, languageId: "rmpl", version, text },
-    });
+    await open(connection, uri, version, text);
   }
 }
 

@@ -1,6 +1,6 @@
 // The extension: starts `kirk lsp` for RMPL files, and has the commands that are not the server's.
 const vscode = require("vscode");
-const { LanguageClient, State } = require("vscode-languageclient/node");
+const { LanguageClient } = require("vscode-languageclient/node");
 const { indentation } = require("./indent");
 const { NoKirk, program, version } = require("./kirk");
 
@@ -67,8 +67,8 @@ async function start(log) {
 async function stop() {
   const running = client;
   client = undefined;
-  // One that has died or never started cannot be stopped, and need not.
-  if (running?.state === State.Running) await running.stop().catch(() => {});
+  // One that has died or never started cannot be stopped: all that matters is that it does not come back.
+  await running?.dispose().catch(() => {});
 }
 
 /** The kirk of the settings. */

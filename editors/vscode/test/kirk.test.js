@@ -9,7 +9,7 @@ const { NoKirk, program, version } = require("../src/kirk");
 test("the setting may be a name or a path, in the home or the workspace", () => {
   assert.strictEqual(program("kirk", undefined), "kirk");
   assert.strictEqual(program(" ", undefined), "kirk");
-  assert.strictEqual(program("/opt/kirk/bin/kirk", "/work"), "/opt/kirk/bin/kirk");
+  assert.strictEqual(program("/opt/kirk/bin/kirk", "/missions"), "/opt/kirk/bin/kirk");
   assert.strictEqual(program("~/bin/kirk", undefined), path.join(os.homedir(), "bin", "kirk"));
   assert.strictEqual(program("${workspaceFolder}/target/release/kirk", "/missions"), "/missions/target/release/kirk");
   assert.throws(() => program("${workspaceFolder}/kirk", undefined), /no folder is open/);

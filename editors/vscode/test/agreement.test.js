@@ -38,7 +38,11 @@ async function byServer(file, lines) {
     const [lineStep, columnStep, length, type] = data.slice(at, at + 4);
     column = lineStep === 0 ? column + columnStep : columnStep;
     line += lineStep;
-    taken[line].fill(LETTERS.get(legend[type]) ?? ".", column, column + length);
+    const letter = LETTERS.get(legend[type]);
+    // A string where a name belongs: kirk shows the name that is in it.
+    const named = !letter && lines[line][column - 1] === '"' && lines[line][column + length] === '"';
+    if (named) taken[line].fill("s", column - 1, column + length + 1);
+    else taken[line].fill(letter ?? ".", column, column + length);
   }
   return taken.map((letters) => letters.join(""));
 }
@@ -66,8 +70,6 @@ test("the grammar of the colours reads as kirk does", async () => {
     for (const name of fs.readdirSync(path.join(project, folder)).filter((it) => it.endsWith(".rmpl"))) {
       // What is never closed goes on to the end for the grammar, which sees one line after the other.
       if (/^K010[34]/.test(name)) continue;
-      // A string where the name of a program belongs is that name for kirk.
-      if (name === "K0205-names.rmpl") continue;
       const file = path.join(project, folder, name);
       const lines = fs.readFileSync(file, "utf8").split(/\r?\n/);
       // Blanks have no colour that can be seen.

@@ -1,0 +1,1 @@
+autocmd BufNewFile,BufRead *.rmpl setfiletype rmpl

@@ -63,13 +63,9 @@ fn execute(journal: bool, flood: bool) -> (Ended, u64) {
     let mission = Mission { program: "lateness".into(), network, plan, handovers };
     let confirm = r#"sed -u -n 's/.*"id":"\([^"]*\)".*/{"executed": "\1"}/p'"#;
     let options = Options {
-        optimistic: true,
-        speed: 1.0,
-        tolerance: 0.0,
         driver: Some(Driver::Stdio(confirm.into())),
-        driver_timeout: 10.0,
         http: Some(Http { bind: "127.0.0.1".into(), port: 0, token_file: None }),
-        on_failure: None,
+        ..Options::default()
     };
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("journal");

@@ -164,7 +164,7 @@ pub(crate) struct Live {
     #[arg(long, default_value = "0", value_name = "S", value_parser = not_negative, conflicts_with = "simulate")]
     pub(crate) tolerance: f64,
     /// Run the clock so many times faster: rehearsals, tests.
-    #[arg(long, default_value = "1", value_name = "X", value_parser = positive, conflicts_with = "simulate")]
+    #[arg(long, default_value = "1", value_name = "X", value_parser = speed, conflicts_with = "simulate")]
     pub(crate) speed: f64,
     /// Record everything there, so that `kirk resume` can go on after whatever interrupts the mission.
     #[arg(long, value_name = "FILE", conflicts_with = "simulate")]
@@ -181,7 +181,7 @@ pub(crate) enum DriverEvents {
 
 fn not_negative(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(number) if number >= 0.0 && number <= 1e9 => Ok(number),
+        Ok(number) if (0.0..=1e9).contains(&number) => Ok(number),
         Ok(_) => Err("expected a number from 0 to 1000000000".to_string()),
         Err(_) => Err("expected a number, such as 1.5".to_string()),
     }
@@ -191,6 +191,13 @@ fn positive(text: &str) -> Result<f64, String> {
     match not_negative(text)? {
         number if number >= 1e-6 => Ok(number),
         _ => Err("expected a number greater than 0".to_string()),
+    }
+}
+
+fn speed(text: &str) -> Result<f64, String> {
+    match positive(text)? {
+        number if number <= 1e6 => Ok(number),
+        _ => Err("expected a number up to 1000000".to_string()),
     }
 }
 
@@ -216,7 +223,7 @@ pub(crate) struct Replay {
     #[arg(value_name = "FILE")]
     pub(crate) journal: PathBuf,
     /// Repeat it so many times faster than it was; at once if not given.
-    #[arg(long, value_name = "X", value_parser = positive)]
+    #[arg(long, value_name = "X", value_parser = speed)]
     pub(crate) speed: Option<f64>,
     /// Also print the events that no user wrote.
     #[arg(long)]

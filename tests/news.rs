@@ -92,25 +92,30 @@ fn connect(address: SocketAddr) -> BufReader<TcpStream> {
     BufReader::new(stream)
 }
 
+/// Reads a request and answers it. Returns its head and its body.
+fn receive(stream: TcpStream, status: &str) -> (String, Vec<u8>) {
+    let mut stream = BufReader::new(stream);
+    let (mut head, mut length, mut line) = (String::new(), 0, String::new());
+    while line != "\r\n" {
+        line.clear();
+        stream.read_line(&mut line).unwrap();
+        if let Some(value) = line.to_lowercase().strip_prefix("content-length:") {
+            length = value.trim().parse().unwrap();
+        }
+        head.push_str(&line);
+    }
+    let mut body = vec![0; length];
+    stream.read_exact(&mut body).unwrap();
+    let answer = format!("HTTP/1.1 {status}\r\nContent-Length: 0\r\nConnection: close\r\n\r\n");
+    stream.get_mut().write_all(answer.as_bytes()).unwrap();
+    (head, body)
+}
+
 /// A driver server as people have written them for the original: takes start and end of an activity, lets it take a while,
 /// and tells every executive of its end, and the next drone that it may fly.
 fn serve(listener: TcpListener, executives: Arc<Mutex<Vec<SocketAddr>>>) {
     for stream in listener.incoming() {
-        let mut stream = BufReader::new(stream.unwrap());
-        let (mut length, mut line) = (0, String::new());
-        while line != "\r\n" {
-            line.clear();
-            stream.read_line(&mut line).unwrap();
-            if let Some(value) = line.to_lowercase().strip_prefix("content-length:") {
-                length = value.trim().parse().unwrap();
-            }
-        }
-        let mut body = vec![0; length];
-        stream.read_exact(&mut body).unwrap();
-        stream
-            .get_mut()
-            .write_all(b"HTTP/1.1 200 OK\r\nContent-Length: 0\r\nConnection: close\r\n\r\n")
-            .unwrap();
+        let (_, body) = receive(stream.unwrap(), "200 OK");
         let command: Value = serde_json::from_slice(&body).unwrap();
         let end = command["end_cmd"].as_str().unwrap().to_string();
         if let Some(number) = end.strip_prefix("+FLY-").and_then(|rest| rest.strip_suffix("::END+")) {
@@ -189,6 +194,34 @@ fn four_executives_side_by_side_fly_four_drones_through_one_driver_server() {
         assert_eq!(verified.status.code(), Some(0), "{}\n{execution}", binary::stdout(&verified));
     }
     assert!(landed.windows(2).all(|pair| pair[1] > pair[0] + 4.0), "one after the other: {landed:?}");
+}
+
+#[test]
+fn dispatches_are_posted_until_the_server_confirms_them_under_one_id() {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let url = format!("http://{}/robot", listener.local_addr().unwrap());
+    let mission = Running::start(&["run", "tests/live/once.rmpl", "--driver-url", &url, "--speed", "10"]);
+    let statuses = ["503 Busy", "500 Oops", "204 No Content"];
+    let requests: Vec<_> =
+        statuses.iter().map(|status| receive(listener.accept().unwrap().0, status)).collect();
+    let execution = mission.end();
+    assert_eq!(execution["outcome"], "completed");
+    let mut ids = Vec::new();
+    for (attempt, (head, body)) in requests.iter().enumerate() {
+        assert!(head.starts_with("POST /robot HTTP/1.1\r\n"), "{head}");
+        let body: Value = serde_json::from_slice(body).unwrap();
+        let dispatch = &body["dispatch"];
+        assert_eq!(dispatch["event"], "go:start");
+        assert_eq!(dispatch["companion"], "go:end");
+        assert_eq!(dispatch["name"], "+GO::START+");
+        assert_eq!(dispatch["due"], 1.0);
+        assert_eq!(dispatch["attempt"], attempt + 1);
+        let id = dispatch["id"].as_str().unwrap();
+        assert!(head.to_lowercase().contains(&format!("idempotency-key: {id}\r\n").to_lowercase()), "{head}");
+        ids.push(id.to_string());
+    }
+    ids.dedup();
+    assert_eq!(ids.len(), 1, "{ids:?}");
 }
 
 #[test]

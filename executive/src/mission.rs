@@ -50,6 +50,21 @@ pub struct Options {
     pub on_failure: Option<String>,
 }
 
+impl Default for Options {
+    /// In real time, with news that says more planned with, and nobody to drive or to report.
+    fn default() -> Options {
+        Options {
+            optimistic: true,
+            speed: 1.0,
+            tolerance: 0.0,
+            driver: None,
+            driver_timeout: 10.0,
+            http: None,
+            on_failure: None,
+        }
+    }
+}
+
 /// Where news is heard over HTTP.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

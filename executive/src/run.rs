@@ -58,7 +58,7 @@ impl Ready {
             stopped: None,
             replies: VecDeque::new(),
         };
-        work.write_ahead_now(Time::ZERO);
+        work.write_ahead_now(clock.now());
         std::thread::sleep(clock.until_anchor());
         work.go(&inbox);
         // Whoever still wants to hand something in is not to wait for somebody to take it.

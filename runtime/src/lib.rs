@@ -29,6 +29,10 @@
 //! 2. `poll_dispatch()`: what is to be executed, until there is nothing more;
 //! 3. `poll_timeout()`: when to call `handle_timeout` if nothing is heard before.
 //!
+//! In real time an [`Executive`] stands between the dispatcher and the world: it hands events over to a driver until that
+//! confirms them, and answers news. All that happens to it is in a [`journal`], from which [`replay()`] leads to the same
+//! state. The clock, the driver and the disk are in the crate `kirk-executive`.
+//!
 //! [`simulate()`] is the loop around it with a simulated [`nature`] and a clock that jumps; it returns an [`Execution`], the
 //! record of what was done and known. [`verify()`] checks such a record and knows nothing of the dispatcher.
 //!

@@ -5,7 +5,7 @@
 //! *A faster algorithm for converting STNUs into dispatchable form*, 2023. In three steps:
 //! 1. the check leaves the edges to activations and the waits ([`crate::controllability`]);
 //! 2. an event that must come before a contingent one must come before it even if Nature takes the least;
-//! 3. of the all-pairs shortest paths ([`crate::hierarchy`]) only those stay that no other edge makes needless, rigid
+//! 3. of the all-pairs shortest paths (`hierarchy.rs`) only those stay that no other edge makes needless, rigid
 //!    groups first.
 
 mod implied;

@@ -62,6 +62,7 @@ pub mod dispatchable;
 pub mod dot;
 pub mod generate;
 pub mod graphml;
+mod hierarchy;
 pub mod json;
 pub mod merge;
 pub mod model;

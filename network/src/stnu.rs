@@ -4,8 +4,8 @@
 //! A link (A, x, y, C) stands for its lower-case edge `A -c:x-> C` and its upper-case edge `C -C:-y-> A`.
 //! L. Hunsberger, *Efficient execution of dynamically controllable simple temporal networks with uncertainty*, 2016.
 
-/// Sums beyond this many microseconds (some 70,000 years) are refused, so that no `i64` addition can overflow.
-pub const LIMIT: i64 = 1 << 61;
+/// Sums beyond this many microseconds (some 18,000 years) are refused, so that no `i64` addition can overflow.
+pub const LIMIT: i64 = 1 << 59;
 
 /// A number grew beyond [`LIMIT`]. An error, never a wrong answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,7 +15,7 @@ impl std::fmt::Display for TooLarge {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(
             f,
-            "the durations of this network add up to more than 70,000 years; kirk cannot compute with that"
+            "the durations of this network add up to more than 18,000 years; kirk cannot compute with that"
         )
     }
 }

@@ -28,6 +28,7 @@ use kirk_network::{Dispatchable, Duration, EventId, Network, Time};
 use crate::agenda::Agenda;
 use crate::execution::How;
 use crate::knowledge::{Knowledge, Known, heard_now};
+use crate::measured::Measured;
 use crate::plan::Plan;
 use crate::rebuild::{Rebuild, Rebuilt};
 
@@ -123,6 +124,7 @@ pub struct Dispatcher {
     unplaced: Vec<(i64, EventId)>,
     /// For every node of the plan the events placed there.
     placed_at: Rows,
+    measured: Measured,
     now: i64,
     in_flight: Vec<InFlight>,
     dispatches: VecDeque<Dispatch>,
@@ -150,6 +152,7 @@ impl Dispatcher {
             knowledge: Knowledge::new(plan.network()),
             unplaced: Vec::new(),
             placed_at: Rows::new(0, std::iter::empty()),
+            measured: Measured::new(plan.network()),
             now: 0,
             in_flight: Vec::new(),
             dispatches: VecDeque::new(),
@@ -215,9 +218,7 @@ impl Dispatcher {
             Some((start, end, _)) if (start..=end).contains(&heard) => {
                 self.happen(place.node, heard, How::Observed)
             }
-            _ if self.settings.strategy == Strategy::Optimistic && self.says_more(event, before) => {
-                self.stale = true;
-            }
+            _ if self.settings.strategy == Strategy::Optimistic && self.says_more(event) => self.stale = true,
             _ if place.heard_by != Some(event) => self.fix(event, heard, How::Observed),
             _ => {}
         }
@@ -407,15 +408,16 @@ impl Dispatcher {
         knowledge.all_happened(network)
     }
 
-    /// True if the news of an event narrowed what was assumed of it or of its ancestors.
-    fn says_more(&self, event: EventId, before: (i64, i64)) -> bool {
-        let place = self.reduction.places[event.index()];
-        let assumed = match self.agenda.executed(place.node) {
-            Some(node) => Some((node.saturating_add(place.earliest), node.saturating_add(place.latest))),
-            None => Some(before),
-        };
+    /// True if the news of an event narrowed what was assumed of it, and that makes a difference to what is left.
+    fn says_more(&self, event: EventId) -> bool {
+        let executed = |event: EventId| self.agenda.executed(self.reduction.places[event.index()].node);
         // Not yet executed: the plan is still to wait for it.
-        self.agenda.executed(place.node).is_none() || self.happened(event) != assumed
+        let Some(node) = executed(event) else { return true };
+        let place = self.reduction.places[event.index()];
+        let assumed = (node.saturating_add(place.earliest), node.saturating_add(place.latest));
+        let to_come = |event| executed(event).is_none();
+        self.happened(event) != Some(assumed)
+            && self.measured.concerns_the_rest(event, &self.knowledge, to_come)
     }
 
     /// Puts what is known in place of the links, for what is left to be planned anew.

@@ -75,6 +75,11 @@ impl Knowledge {
         self.root[event.index()]
     }
 
+    /// The contingent events of the tree of links that a contingent event belongs to.
+    pub(crate) fn tree(&self, event: EventId) -> &[EventId] {
+        &self.trees[self.root[event.index()].index()]
+    }
+
     /// Fixes an event; false if it is fixed already.
     pub(crate) fn fix(&mut self, event: EventId, time: i64, how: How) -> bool {
         let known = &mut self.events[event.index()];

@@ -53,6 +53,7 @@ pub mod execution;
 pub mod executive;
 pub mod journal;
 pub mod knowledge;
+mod measured;
 pub mod nature;
 mod order;
 pub mod plan;

@@ -2,11 +2,10 @@
 
 use std::sync::Arc;
 
-use kirk_network::dispatchable::{dispatchable, dispatchable_quickly};
 use kirk_network::merge::merge;
 use kirk_network::reduce::{Progress, ReduceError, Reduction, reduce, reduce_rest};
 use kirk_network::stnu::TooLarge;
-use kirk_network::{Conflict, Dispatchable, Network, Verdict, check};
+use kirk_network::{Conflict, Dispatchable, Network, Verdict, check, dispatchable};
 
 /// What an execution needs: the merged network, how its news is used, and the dispatchable form.
 #[derive(Clone, Debug)]
@@ -35,7 +34,7 @@ impl Plan {
     /// Merges, reduces, proves and compiles a network.
     pub fn new(network: &Network) -> Result<Plan, NoPlan> {
         let merged = merge(network).network;
-        match compile(reduce(&merged), LARGEST_MINIMAL)? {
+        match compile(reduce(&merged))? {
             Some((reduction, net)) => Ok(Plan { network: Arc::new(merged), reduction, net }),
             None => match check(network)? {
                 Verdict::Uncontrollable(conflict) => Err(NoPlan::Uncontrollable(conflict)),
@@ -56,23 +55,13 @@ impl Plan {
 
 /// The plan for what is left of an execution, `None` if there is none.
 pub(crate) fn rest(network: &Network, progress: &Progress) -> Option<(Reduction, Dispatchable)> {
-    compile(reduce_rest(network, progress), 0).ok().flatten()
+    compile(reduce_rest(network, progress)).ok().flatten()
 }
 
-/// Networks of more nodes are not worth the minimal form: that takes longer than it saves.
-const LARGEST_MINIMAL: u32 = 3_000;
-
-fn compile(
-    reduction: Result<Reduction, ReduceError>,
-    largest_minimal: u32,
-) -> Result<Option<(Reduction, Dispatchable)>, TooLarge> {
+fn compile(reduction: Result<Reduction, ReduceError>) -> Result<Option<(Reduction, Dispatchable)>, TooLarge> {
     match reduction {
         Err(ReduceError::TooLarge) => Err(TooLarge),
         Err(ReduceError::Never(_)) => Ok(None),
-        Ok(reduction) => {
-            let minimal = reduction.stnu.nodes <= largest_minimal;
-            let make = if minimal { dispatchable } else { dispatchable_quickly };
-            Ok(make(&reduction.stnu)?.map(|net| (reduction, net)))
-        }
+        Ok(reduction) => Ok(dispatchable(&reduction.stnu)?.map(|net| (reduction, net))),
     }
 }

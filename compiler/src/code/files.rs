@@ -19,7 +19,7 @@ problems are reported at once.",
 };
 
 pub(super) const NUMBERS_TOO_LARGE: Page = Page {
-    meaning: "Each number is in range, but along some path through the network they add up to more than 70,000 years of
+    meaning: "Each number is in range, but along some path through the network they add up to more than 18,000 years of
 microseconds. kirk computes exactly or not at all, so it gives no verdict. Look for a bound that was meant to be infinite:
 write `:infinity`, or leave the bound out.",
     wrong: "",

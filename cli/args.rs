@@ -181,7 +181,7 @@ pub(crate) enum DriverEvents {
 
 fn not_negative(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(number) if number >= 0.0 && number <= 1e9 => Ok(number),
+        Ok(number) if (0.0..=1e9).contains(&number) => Ok(number),
         Ok(_) => Err("expected a number from 0 to 1000000000".to_string()),
         Err(_) => Err("expected a number, such as 1.5".to_string()),
     }

@@ -129,8 +129,9 @@ pub struct Dispatcher {
     in_flight: Vec<InFlight>,
     dispatches: VecDeque<Dispatch>,
     fixed: VecDeque<EventId>,
-    /// News came that is not planned with yet.
+    /// News came that is not planned with yet, and a plan with it has been asked for.
     stale: bool,
+    asked: bool,
     /// Changes whenever anything happens.
     version: u64,
     missed: Option<Missed>,
@@ -158,6 +159,7 @@ impl Dispatcher {
             dispatches: VecDeque::new(),
             fixed: VecDeque::new(),
             stale: false,
+            asked: false,
             version: 0,
             missed: None,
             plan,
@@ -294,10 +296,10 @@ impl Dispatcher {
     /// to plan, so that has to wait.
     pub fn poll_rebuild(&mut self, now: Time) -> Option<Rebuild> {
         self.now = self.now.max(now.as_micros());
-        if !self.stale || !self.in_flight.is_empty() || self.missed.is_some() {
+        if !self.stale || self.asked || !self.in_flight.is_empty() || self.missed.is_some() {
             return None;
         }
-        self.stale = false;
+        self.asked = true;
         Some(self.rebuild())
     }
 
@@ -305,9 +307,10 @@ impl Dispatcher {
     /// again.
     pub fn handle_rebuilt(&mut self, rebuilt: Rebuilt) -> bool {
         let current = rebuilt.version == self.version;
-        // A plan of this very state knows all the news there is.
-        self.stale = !current;
+        self.asked = false;
         if current {
+            // It knows all the news there is.
+            self.stale = false;
             self.adopt(rebuilt);
         }
         current

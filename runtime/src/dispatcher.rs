@@ -19,6 +19,8 @@
 //! its time elsewhere. The buffering execution satisfies the new plan too, so there always is one; it only adds freedom,
 //! and until it is there the old plan stands.
 
+mod replan;
+
 use std::collections::VecDeque;
 
 use kirk_network::reduce::Reduction;
@@ -30,7 +32,6 @@ use crate::execution::How;
 use crate::knowledge::{Knowledge, Known, heard_now};
 use crate::measured::Measured;
 use crate::plan::Plan;
-use crate::rebuild::{Rebuild, Rebuilt};
 
 /// What to do with news that says more than the plan assumed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -292,30 +293,6 @@ impl Dispatcher {
         Some(self.agenda.upper(flight.node)).filter(|&upper| upper < i64::MAX).map(Time::from_micros)
     }
 
-    /// What is to be planned anew because of news, if anything is. While events are in flight it is not known from where
-    /// to plan, so that has to wait.
-    pub fn poll_rebuild(&mut self, now: Time) -> Option<Rebuild> {
-        self.now = self.now.max(now.as_micros());
-        if !self.stale || self.asked || !self.in_flight.is_empty() || self.missed.is_some() {
-            return None;
-        }
-        self.asked = true;
-        Some(self.rebuild())
-    }
-
-    /// Goes on with a new plan. Returns false if it came too late: something has happened since, and it has to be asked for
-    /// again.
-    pub fn handle_rebuilt(&mut self, rebuilt: Rebuilt) -> bool {
-        let current = rebuilt.version == self.version;
-        self.asked = false;
-        if current {
-            // It knows all the news there is.
-            self.stale = false;
-            self.adopt(rebuilt);
-        }
-        current
-    }
-
     /// The next event to be fixed, however it came to be; call until there is none.
     pub fn poll_fixed(&mut self) -> Option<EventId> {
         self.fixed.pop_front()
@@ -405,78 +382,19 @@ impl Dispatcher {
         for link in network.contingents().iter().filter(|link| self.known(link.to).observed.is_none()) {
             if let Some(max) = link.delay.max.finite() {
                 let earliest = end.as_micros().saturating_sub(max.as_micros());
-                knowledge.add_evidence(link.to, (earliest, i64::MAX));
-            }
-        }
-        knowledge.all_happened(network)
-    }
-
-    /// True if the news of an event narrowed what was assumed of it, and that makes a difference to what is left.
-    fn says_more(&self, event: EventId) -> bool {
-        let executed = |event: EventId| self.agenda.executed(self.reduction.places[event.index()].node);
-        // Not yet executed: the plan is still to wait for it.
-        let Some(node) = executed(event) else { return true };
-        let place = self.reduction.places[event.index()];
-        let assumed = (node.saturating_add(place.earliest), node.saturating_add(place.latest));
-        let to_come = |event| executed(event).is_none();
-        self.happened(event) != Some(assumed)
-            && self.measured.concerns_the_rest(event, &self.knowledge, to_come)
-    }
-
-    /// Puts what is known in place of the links, for what is left to be planned anew.
-    fn rebuild(&mut self) -> Rebuild {
-        let network = self.plan.shared_network();
-        self.knowledge.settle_ancestors(&network);
-        let happened = self.knowledge.all_happened(&network);
-        let known = network
-            .event_ids()
-            .map(|event| match (network.link_of(event), self.knowledge.of(event)) {
-                (None, known) => known.fixed.map(|(time, _)| (time, time)),
-                (Some(_), known) if known.settled => happened[event.index()]
-                    .map(|(low, high)| (Time::from_micros(low), Time::from_micros(high))),
-                _ => None,
-            })
-            .collect();
-        Rebuild::new(network, Time::from_micros(self.now), known, self.version)
-    }
-
-    /// Follows a new plan; false if there is none.
-    fn adopt(&mut self, rebuilt: Rebuilt) -> bool {
-        let Some((reduction, net)) = rebuilt.plan else {
-            // In a delayed chain the reduction may be too careful to see that there is a way. Then the old plan stands.
-            for event in self.plan.network().event_ids() {
-                let known = *self.known(event);
-                if let (Some(heard), None) = (known.observed, known.fixed)
-                    && self.reduction.places[event.index()].heard_by != Some(event)
-                {
-                    self.fix(event, heard.as_micros(), How::Observed);
+                // If it was to be heard long ago its news is lost, and silence says nothing.
+                if self.happened(link.to).is_some_and(|(_, high)| high >= earliest) {
+                    knowledge.add_evidence(link.to, (earliest, i64::MAX));
                 }
             }
-            return false;
-        };
-        let planned = rebuilt.now.as_micros();
-        self.agenda = agenda(&reduction, &net, &self.confirmed, self.settings.lead);
-        self.reduction = reduction;
-        self.active.clear();
-        self.activate_from_origin();
-        for flight in &mut self.in_flight {
-            flight.node = self.reduction.places[flight.event.index()].node;
-            flight.due = flight.due.max(planned);
-            self.agenda.take(flight.node);
         }
-        for event in self.plan.network().event_ids() {
-            let known = *self.known(event);
-            if known.settled && known.fixed.is_none() {
-                let (time, how) = match known.observed.map(Time::as_micros) {
-                    // Lateness of ours is not held against the news.
-                    Some(heard) if self.recorded(heard, planned) == heard => (heard, How::Observed),
-                    Some(_) => (planned, How::Buffered),
-                    None => (planned, How::Imagined),
-                };
-                self.fix(event, time, how);
-            }
-        }
-        true
+        let (silent, all) = (knowledge.all_happened(network), self.all_happened());
+        let possible = |interval: &Option<(i64, i64)>| interval.is_some_and(|(low, high)| low <= high);
+        silent
+            .into_iter()
+            .zip(all)
+            .map(|(silent, known)| if possible(&silent) { silent } else { known })
+            .collect()
     }
 
     /// The origin of the plan is executed; what is measured from it has begun.
@@ -500,7 +418,11 @@ impl Dispatcher {
             let heard = self.reduction.places[root.index()]
                 .heard_by
                 .is_some_and(|event| self.known(event).observed.is_some());
-            if heard { (start.max(self.now), node, How::Buffered) } else { (end, node, How::Imagined) }
+            if heard {
+                (self.recorded(start, start.max(self.now)), node, How::Buffered)
+            } else {
+                (end, node, How::Imagined)
+            }
         });
         ends.min_by_key(|&(time, node, _)| (time, node))
     }

@@ -25,6 +25,8 @@ pub struct Executive {
     /// What the ids of its dispatches begin with.
     run: String,
     lateness: Duration,
+    /// How far news may be outside of what the model allows.
+    slack: Duration,
     patience: Patience,
     handovers: Vec<Handover>,
     /// For each event, where its handovers begin and end.
@@ -34,6 +36,8 @@ pub struct Executive {
     unannounced: Vec<EventId>,
     /// News of what began with an event that is in flight.
     held: Vec<(Time, EventId)>,
+    /// Events that were imagined, and when their news was to come at the latest.
+    awaited: Vec<(Time, EventId)>,
     outputs: VecDeque<Output>,
     failure: Option<Failure>,
     over: bool,
@@ -129,6 +133,7 @@ impl Executive {
         }
         let mut executive = Executive {
             lateness: settings.lateness,
+            slack: settings.lead.checked_add(settings.lateness).unwrap_or(settings.lead),
             dispatcher: Dispatcher::new(plan, settings),
             program,
             run,
@@ -138,6 +143,7 @@ impl Executive {
             orders: Vec::new(),
             unannounced,
             held: Vec::new(),
+            awaited: Vec::new(),
             outputs: VecDeque::new(),
             failure: None,
             over: false,
@@ -297,7 +303,9 @@ impl Executive {
         }
         let retry = self.orders.iter().filter_map(|order| order.state.wakes());
         let surely = self.unannounced.iter().filter_map(|&event| surely(&self.dispatcher, event));
-        let soonest = retry.chain(surely).min();
+        // One microsecond more, and it is lost.
+        let lost = self.awaited.iter().map(|(by, _)| Time::from_micros(by.as_micros().saturating_add(1)));
+        let soonest = retry.chain(surely).chain(lost).min();
         soonest.into_iter().chain(self.dispatcher.poll_timeout()).min()
     }
 
@@ -397,9 +405,7 @@ impl Executive {
         while let Some(dispatch) = self.dispatcher.poll_dispatch() {
             self.hand_over(dispatch.event, dispatch.time, now);
         }
-        while let Some(event) = self.dispatcher.poll_fixed() {
-            self.outputs.push_back(Output::Fixed(event));
-        }
+        self.tell_fixed();
         for event in std::mem::take(&mut self.unannounced) {
             match surely(&self.dispatcher, event) {
                 Some(time) if time <= now => self.hand_over(event, time, now),
@@ -409,6 +415,7 @@ impl Executive {
         for at in 0..self.orders.len() {
             self.look_after(at, now);
         }
+        self.miss_news(now);
         if self.over {
             return;
         }
@@ -420,9 +427,48 @@ impl Executive {
             && self.orders.iter().all(|order| order.state == State::Done)
             && self.dispatcher.is_over()
         {
+            // A plan with the last news would have come too late.
+            self.dispatcher.fix_heard();
+            self.tell_fixed();
             self.over = true;
             self.changes += 1;
             self.outputs.push_back(Output::Over);
+        }
+    }
+
+    fn tell_fixed(&mut self) {
+        while let Some(event) = self.dispatcher.poll_fixed() {
+            self.outputs.push_back(Output::Fixed(event));
+            if let Some((_, How::Imagined)) = self.dispatcher.known(event).fixed {
+                self.awaited.extend(self.news_by(event).map(|by| (by, event)));
+            }
+        }
+    }
+
+    /// When news of an event is to come at the latest, our lateness allowed for.
+    fn news_by(&self, event: EventId) -> Option<Time> {
+        let link = self.network().contingents()[self.network().link_of(event)?];
+        let (_, high) = self.dispatcher.happened(event)?;
+        let by = Time::from_micros(high).checked_add(link.delay.max.finite()?)?;
+        by.checked_add(self.slack)
+    }
+
+    /// Says so when news is lost: what was imagined stands, but something is wrong in the world.
+    fn miss_news(&mut self, now: Time) {
+        for (by, event) in std::mem::take(&mut self.awaited) {
+            if self.dispatcher.known(event).observed.is_some() {
+                continue;
+            }
+            if by >= now {
+                self.awaited.push((by, event));
+                continue;
+            }
+            self.changes += 1;
+            self.outputs.push_back(Output::Warning(format!(
+                "nothing was heard of `{}`, though its news was to come by {by} s: the model is broken, or the news is lost; the \
+                 mission goes on as if it had happened",
+                self.network().label(event)
+            )));
         }
     }
 

@@ -220,10 +220,31 @@ impl Verifier<'_> {
             );
             for link in self.network.contingents() {
                 self.say_impossible_link(link.from, link.to);
+                self.say_lost_news(link.to);
             }
             return;
         };
         debug_assert_eq!(from_origin[origin.index()], Some(0));
+    }
+
+    /// Names an event that was never heard of although its news was to come before the end.
+    fn say_lost_news(&mut self, event: EventId) {
+        let Some(link) = self.network.link_of(event).map(|link| self.network.contingents()[link]) else {
+            return;
+        };
+        let silent = self.facts[event.index()].is_some_and(|fact| fact.observed.is_none());
+        let latest = self.latest.get(event.index()).copied().flatten();
+        if let (true, Some(latest), Bound::Finite(max)) = (silent, latest, link.delay.max) {
+            let by = latest.saturating_add(max.as_micros());
+            if by < self.makespan {
+                let name = self.network.label(event).to_string();
+                let by = kirk_network::Duration::from_micros(by);
+                self.say(
+                    Some(&name),
+                    format!("`{name}` was never heard of, though its news was to come by {by} s"),
+                );
+            }
+        }
     }
 
     /// Names a link whose duration is out of bounds, where both ends are recorded.

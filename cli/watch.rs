@@ -67,9 +67,9 @@ fn lines(happening: &Happening) -> Vec<String> {
 /// Takes every line of standard input as news: an event, or what the original's `POST /` takes.
 pub(crate) fn read_lines(desk: Desk) {
     std::thread::spawn(move || {
-        for line in std::io::stdin().lock().lines() {
+        for line in std::io::stdin().lock().split(b'\n') {
             let Ok(line) = line else { return };
-            match names(line.trim()) {
+            match names(String::from_utf8_lossy(&line).trim()) {
                 Ok(names) if names.is_empty() => {}
                 Ok(names) => desk.news(names, Box::new(said)),
                 Err(message) => remark(&message),

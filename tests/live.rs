@@ -158,7 +158,7 @@ fn a_driver_that_fails_or_dies_or_hangs_is_tried_again_and_then_the_mission_fail
     completed(&output);
     assert_eq!(lines(&count).len(), 3);
     for (driver, reason) in [
-        ("stdio:exit 3", "the driver ended (exit status: 3)"),
+        ("stdio:exit 3", "exit status: 3"),
         ("stdio:sleep 60", "no answer within 0.3 s"),
         ("stdio:echo nonsense; sleep 60", "no answer within 0.3 s"),
     ] {

@@ -44,8 +44,8 @@ pub(crate) enum Message {
     News { arrived: Time, events: Vec<(String, EventId)>, answer: AnswerNews, reply: Reply<AnswerNews> },
     /// The driver confirmed a dispatch, `ago` seconds after it was executed if it says so.
     Executed { id: String, ago: Option<f64> },
-    /// The driver failed.
-    Failed { id: String, reason: String },
+    /// The driver failed, or in case of doubt nobody knows.
+    Failed { id: String, reason: String, doubt: bool },
     /// The driver has something to say to people.
     Warning(String),
     /// A new plan is ready.
@@ -79,6 +79,26 @@ pub struct Ignored {
     pub event: String,
     /// Why it is of no use.
     pub why: String,
+}
+
+/// How an attempt of the driver failed.
+#[derive(Clone, Debug)]
+pub(crate) struct Failed {
+    pub(crate) reason: String,
+    /// The event may have been executed all the same.
+    pub(crate) doubt: bool,
+}
+
+impl Failed {
+    /// It was not executed.
+    pub(crate) fn surely(reason: impl Into<String>) -> Failed {
+        Failed { reason: reason.into(), doubt: false }
+    }
+
+    /// Nobody knows.
+    pub(crate) fn perhaps(reason: impl Into<String>) -> Failed {
+        Failed { reason: reason.into(), doubt: true }
+    }
 }
 
 /// How many messages may wait, and how many happenings a slow listener may be behind.
@@ -162,8 +182,9 @@ impl Desk {
         let _ = self.inbox.send(Message::Executed { id, ago });
     }
 
-    pub(crate) fn failed(&self, id: String, reason: String) {
-        let _ = self.inbox.send(Message::Failed { id, reason });
+    pub(crate) fn failed(&self, id: String, failure: Failed) {
+        let Failed { reason, doubt } = failure;
+        let _ = self.inbox.send(Message::Failed { id, reason, doubt });
     }
 
     pub(crate) fn warn(&self, text: String) {

@@ -21,6 +21,16 @@ pub(crate) fn stopped(execution: &Execution, now: Time, reason: &str) -> Failure
     }
 }
 
+/// The failure of a mission whose end is not in its journal.
+pub(crate) fn unrecorded(execution: &Execution, detail: &str) -> Failure {
+    Failure {
+        event: execution.rows.last().map_or(execution.program.clone(), |row| row.event.clone()),
+        time: execution.makespan,
+        reason: "journal-failed".to_string(),
+        detail: format!("all was executed, but that is not recorded: {detail}"),
+    }
+}
+
 /// Runs a shell command with the failure in its environment.
 pub(crate) fn tell(command: &str, program: &str, failure: &Failure) {
     let Ok(runtime) = tokio::runtime::Builder::new_current_thread().enable_all().build() else { return };

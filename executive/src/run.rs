@@ -35,6 +35,8 @@ pub struct Ended {
 
 /// How long before it is due, really, the next dispatch is written to the journal.
 const AHEAD: Real = Real::from_millis(100);
+/// How many messages are taken before it is looked at what is due.
+const AT_ONCE: usize = 64;
 /// A machine that slept does not count its sleep as waiting: look at the clock now and then.
 const LONGEST_SLEEP: Real = Real::from_secs(1);
 
@@ -56,6 +58,7 @@ impl Ready {
             ignored: HashSet::new(),
             lateness: Lateness::default(),
             stopped: None,
+            lost: None,
             replies: VecDeque::new(),
         };
         work.write_ahead_now(clock.now());
@@ -69,6 +72,10 @@ impl Ready {
         if let Some(reason) = &work.stopped {
             execution.outcome = kirk_runtime::Outcome::Failed;
             execution.failure = Some(failure::stopped(&execution, now, reason));
+        }
+        if let (Some(detail), None) = (&work.lost, &execution.failure) {
+            execution.outcome = kirk_runtime::Outcome::Failed;
+            execution.failure = Some(failure::unrecorded(&execution, detail));
         }
         work.desk.tell(Happening::Over { at: at(now), execution: execution.clone() });
         if let Some(driver) = work.driver.take() {
@@ -102,6 +109,8 @@ struct Loop {
     ignored: HashSet<(String, String)>,
     lateness: Lateness,
     stopped: Option<String>,
+    /// Why the journal could not be written, if it could not.
+    lost: Option<String>,
     /// Who is answered when it is.
     replies: VecDeque<(Ticket, AnswerNews, Reply<AnswerNews>)>,
 }
@@ -110,7 +119,12 @@ impl Loop {
     fn go(&mut self, inbox: &Receiver<Message>) {
         self.perform();
         while !self.executive.is_over() && self.stopped.is_none() {
+            // News that waits may be older than what is due by now.
+            for message in inbox.try_iter().take(AT_ONCE) {
+                self.take(message);
+            }
             let now = self.clock.now();
+            self.plan_anew(now);
             let next = self.executive.poll_timeout();
             if next.is_some_and(|next| next <= now) {
                 self.timeout(now);
@@ -143,16 +157,20 @@ impl Loop {
                 self.news(arrived, events, answer, reply);
                 now = arrived;
             }
+            // A driver may say what it likes; only what is ours is worth a record.
+            Message::Executed { id, .. } | Message::Failed { id, .. } if !self.executive.is_order(&id) => {}
             Message::Executed { id, ago } => {
-                let ago = ago.map(|ago| Duration::from_micros(self.clock.mission_micros((ago * 1e6) as i64)));
+                let micros =
+                    |ago: f64| self.clock.mission_micros((ago * 1e6) as i64).clamp(0, now.as_micros());
+                let ago = ago.map(|ago| Duration::from_micros(micros(ago)));
                 self.record(now, Record::Executed { id: id.clone(), ago: ago.map(seconds) });
                 self.executive.handle_executed(now, &id, ago);
                 self.perform();
                 self.sync();
             }
-            Message::Failed { id, reason } => {
-                self.record(now, Record::Failed { id: id.clone(), reason: reason.clone() });
-                self.executive.handle_failed(now, &id, &reason);
+            Message::Failed { id, reason, doubt } => {
+                self.record(now, Record::Failed { id: id.clone(), reason: reason.clone(), doubt });
+                self.executive.handle_failed(now, &id, &reason, doubt);
                 self.desk.tell(Happening::Failed { at: at(now), id, reason });
                 self.perform();
             }
@@ -281,7 +299,6 @@ impl Loop {
                 later => self.outbox.extend(later),
             }
         }
-        self.write();
         while self.replies.front().is_some_and(|(ticket, ..)| *ticket <= safe) {
             if let Some((_, answer, reply)) = self.replies.pop_front() {
                 reply(answer);
@@ -290,20 +307,30 @@ impl Loop {
     }
 
     fn send(&mut self, sending: Sending) {
-        if self.executive.failure().is_some() {
+        let now = self.clock.now();
+        let before = self.executive.version();
+        let leaves = self.executive.handle_sent(now, &sending.id);
+        if self.executive.version() != before {
+            self.record(now, Record::Sent { id: sending.id.clone() });
+        }
+        // The record is there before the driver is told: who resumes knows.
+        self.write();
+        if !leaves || self.journal_lost() {
             return;
         }
-        let now = self.clock.now();
         let Sending { id, name, due, attempt, .. } = &sending;
         if *attempt == 1 {
             self.lateness.add(now, *due);
         }
         let (id, event, due, attempt) = (id.clone(), name.clone(), at(*due), *attempt);
-        self.record(now, Record::Sent { id: id.clone() });
         self.desk.tell(Happening::Sent { at: at(now), event, id, due, attempt });
         if let Some(driver) = &self.driver {
             driver.send(sending);
         }
+    }
+
+    fn journal_lost(&self) -> bool {
+        self.lost.is_some()
     }
 
     /// If something is to leave soon, puts it on the disk now.
@@ -370,9 +397,14 @@ impl Loop {
         self.replies.clear();
         let detail = format!("the journal cannot be written: {error}");
         self.executive.handle_stopped(self.clock.now(), "journal-failed", &detail);
+        self.lost = Some(detail);
     }
 
     fn finish_journal(&mut self) {
+        if self.stopped.is_some() {
+            // What has not left is for whoever resumes.
+            self.outbox.clear();
+        }
         if let Some(Err(error)) = self.journal.take().map(JournalFile::finish) {
             self.lose_journal(&error);
         }

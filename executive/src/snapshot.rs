@@ -174,7 +174,7 @@ mod tests {
         };
         assert_eq!(pending, std::slice::from_ref(&expected));
 
-        executive.handle_failed(second(2), "run/scan:start", "no power");
+        executive.handle_failed(second(2), "run/scan:start", "no power", false);
         let failed = Pending { again: Some(second(3)), reason: "no power".to_string(), ..expected };
         assert_eq!(snapshot(&mut executive, second(2), false).pending, [failed]);
 

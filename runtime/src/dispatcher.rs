@@ -78,6 +78,8 @@ struct InFlight {
     event: EventId,
     node: u32,
     due: i64,
+    /// Since when it is, if it was confirmed before it is due: until then news may still bring it forward.
+    executed: Option<i64>,
 }
 
 /// What was done with news.
@@ -228,18 +230,20 @@ impl Dispatcher {
         Reception::Accepted
     }
 
-    /// Takes news of an event that the model rules out: the event happened when its delay says, whatever its link says.
-    /// Returns whether there is still a plan for all the rest. An event whose activation has not happened is not taken.
-    pub fn handle_impossible(&mut self, now: Time, event: EventId) -> bool {
-        self.now = self.now.max(now.as_micros());
+    /// Takes news, arrived at a time, that the model rules out: the event happened when its delay says, whatever its link
+    /// says. Returns whether there is still a plan for all the rest. An event whose activation has not happened is not
+    /// taken. Nothing may be in flight.
+    pub fn handle_impossible(&mut self, arrived: Time, event: EventId) -> bool {
+        let arrived = arrived.as_micros();
+        self.now = self.now.max(arrived);
         let (Some(link), Some(_)) = (self.network().link_of(event), self.happened(event)) else {
             return false;
         };
         let link = self.network().contingents()[link];
         self.version += 1;
-        self.knowledge.hear(event, self.now);
-        self.knowledge.overrule(event, heard_now(&link, self.now));
-        let rebuilt = self.rebuild().run();
+        self.knowledge.hear(event, arrived);
+        self.knowledge.overrule(event, heard_now(&link, arrived));
+        let rebuilt = self.rebuild(self.now).run();
         self.adopt(rebuilt)
     }
 
@@ -248,28 +252,54 @@ impl Dispatcher {
         self.now = self.now.max(now.as_micros());
         while self.missed.is_none() {
             let link = self.next_link().filter(|&(time, ..)| time <= self.now);
+            let early = self.next_early().filter(|&(time, _)| time <= self.now);
             let event = self.agenda.next().filter(|&(action, _)| action <= self.now).map(|(_, node)| {
                 let due = self.agenda.due(node);
-                (self.recorded(due, self.now), node)
+                (self.recorded(due, self.now, self.agenda.upper(node)), node)
             });
-            match (link, event) {
-                // At one time Nature comes first, so that we act on all there is to know.
-                (Some((time, node, how)), event) if event.is_none_or(|(at, _)| time <= at) => {
+            // At one time Nature comes first, so that we act on all there is to know.
+            let first = early.map(|(time, _)| time).into_iter().chain(event.map(|(time, _)| time)).min();
+            match (link, early, event) {
+                (Some((time, node, how)), ..) if first.is_none_or(|first| time <= first) => {
                     self.happen(node, time, how);
                 }
-                (_, Some((time, node))) => self.execute(time, node),
+                (_, Some((time, at)), _) if Some(time) == first => {
+                    let InFlight { event, node, .. } = self.in_flight.remove(at);
+                    self.version += 1;
+                    self.executed(event, node, time);
+                }
+                (.., Some((time, node))) => self.execute(time, node),
                 _ => break,
             }
         }
     }
 
-    /// An event in flight was executed, `at` some time up to now. What follows it can go on.
+    /// The next event that was confirmed before it is due, and when it counts as executed: then, or when its window closes.
+    fn next_early(&self) -> Option<(i64, usize)> {
+        let early = self.in_flight.iter().enumerate().filter_map(|(index, flight)| {
+            let since = flight.executed?;
+            Some((flight.due.min(self.agenda.upper(flight.node)).max(since), index))
+        });
+        early.min()
+    }
+
+    /// An event in flight was executed, `at` some time up to now. What follows it can go on. One that was executed before it
+    /// was due stays in flight until it is.
     pub fn handle_executed(&mut self, now: Time, event: EventId, at: Time) {
         self.now = self.now.max(now.as_micros());
         let Some(found) = self.in_flight.iter().position(|flight| flight.event == event) else { return };
-        let InFlight { node, due, .. } = self.in_flight.remove(found);
-        let time = self.recorded(due, at.as_micros());
+        let InFlight { node, due, .. } = self.in_flight[found];
         self.version += 1;
+        if due > self.now {
+            self.in_flight[found].executed = Some(at.as_micros());
+            return;
+        }
+        self.in_flight.remove(found);
+        let time = self.recorded(due, at.as_micros(), self.agenda.upper(node));
+        self.executed(event, node, time);
+    }
+
+    fn executed(&mut self, event: EventId, node: u32, time: i64) {
         if self.in_time(time, node) {
             self.fix(event, time, How::Dispatched);
             self.start(node, time);
@@ -311,7 +341,12 @@ impl Dispatcher {
         self.reduction.places[event.index()].heard_by != Some(event)
     }
 
-    /// True from the dispatch of an event to its confirmation.
+    /// True if anything is in flight.
+    pub fn has_in_flight(&self) -> bool {
+        !self.in_flight.is_empty()
+    }
+
+    /// True from the dispatch of an event until it counts as executed.
     pub fn is_in_flight(&self, event: EventId) -> bool {
         self.in_flight.iter().any(|flight| flight.event == event)
     }
@@ -345,7 +380,13 @@ impl Dispatcher {
         let link = self.next_link().map(|(time, ..)| time);
         let event = self.agenda.next().map(|(time, _)| time);
         let over = self.last_unheard().filter(|&time| time > self.now);
-        link.into_iter().chain(event).chain(over).min().map(|time| Time::from_micros(time.max(self.now)))
+        let early = self.next_early().map(|(time, _)| time);
+        link.into_iter()
+            .chain(early)
+            .chain(event)
+            .chain(over)
+            .min()
+            .map(|time| Time::from_micros(time.max(self.now)))
     }
 
     /// What will be done next if nothing is heard: when, with which event, and how. `None` when nothing is left or all
@@ -419,7 +460,7 @@ impl Dispatcher {
                 .heard_by
                 .is_some_and(|event| self.known(event).observed.is_some());
             if heard {
-                (self.recorded(start, start.max(self.now)), node, How::Buffered)
+                (self.recorded(start, start.max(self.now), end).min(end), node, How::Buffered)
             } else {
                 (end, node, How::Imagined)
             }
@@ -458,16 +499,24 @@ impl Dispatcher {
         self.dispatches.push_back(Dispatch { event, time: Time::from_micros(time) });
         if self.confirmed[event.index()] {
             self.agenda.take(node);
-            self.in_flight.push(InFlight { event, node, due: time });
+            self.in_flight.push(InFlight { event, node, due: time, executed: None });
         } else {
             self.fix(event, time, How::Dispatched);
             self.start(node, time);
         }
     }
 
-    /// When an event that was due and is executed `at` some time is recorded: when due, unless that is too long ago.
-    fn recorded(&self, due: i64, at: i64) -> i64 {
-        if at.saturating_sub(due) > self.settings.lateness.as_micros() { at } else { due }
+    /// When an event that was due and is executed `at` some time is recorded: when due, unless that is too long ago. What
+    /// is late for its window by no more than is allowed counts as just in time.
+    fn recorded(&self, due: i64, at: i64, latest: i64) -> i64 {
+        let lateness = self.settings.lateness.as_micros();
+        if at.saturating_sub(due) <= lateness {
+            due
+        } else if at > latest && at.saturating_sub(latest) <= lateness {
+            latest
+        } else {
+            at
+        }
     }
 
     /// False, and the end of it all, if an event would be executed after its window.

@@ -185,6 +185,9 @@ impl Executive {
         }
         self.dispatcher.handle_timeout(now);
         self.settle(now);
+        if !self.held.is_empty() && !self.over {
+            self.hear_held(now);
+        }
     }
 
     /// Takes news that arrived at a time, usually now.
@@ -211,6 +214,36 @@ impl Executive {
         answer
     }
 
+    /// An attempt leaves for the driver now: from now on it counts. Returns false if its window has closed meanwhile; then it
+    /// must not leave.
+    pub fn handle_sent(&mut self, now: Time, id: &str) -> bool {
+        let Some(at) = self.orders.iter().position(|order| order.id == id) else { return false };
+        let closes = self.closes(at);
+        let order = &mut self.orders[at];
+        if self.over || order.state != State::Sent {
+            return false;
+        }
+        self.changes += 1;
+        if closes.is_some_and(|closes| now > closes) {
+            order.reason = "it could not be recorded in time".to_string();
+            order.state = State::Waiting(now);
+            self.settle(now);
+            return false;
+        }
+        if !order.doubtful {
+            order.started = now;
+        }
+        if order.attempts == 1 {
+            order.first_sent = now;
+        }
+        true
+    }
+
+    /// True if a dispatch is with the driver or was.
+    pub fn is_order(&self, id: &str) -> bool {
+        self.orders.iter().any(|order| order.id == id)
+    }
+
     /// The driver has executed what was handed over, `ago` before now if it says so.
     pub fn handle_executed(&mut self, now: Time, id: &str, ago: Option<Duration>) {
         let Some(order) = self.orders.iter_mut().find(|order| order.id == id) else { return };
@@ -229,6 +262,11 @@ impl Executive {
             self.dispatcher.handle_executed(now, event, started);
         }
         self.settle(now);
+        self.hear_held(now);
+    }
+
+    /// Takes the news that had to wait for what was in flight.
+    fn hear_held(&mut self, now: Time) {
         for (arrived, event) in std::mem::take(&mut self.held) {
             if self.dispatcher.is_in_flight(self.dispatcher.root(event)) {
                 self.held.push((arrived, event));
@@ -236,17 +274,21 @@ impl Executive {
                 self.hear(arrived, event);
             }
         }
-        self.handle_timeout(now);
+        self.dispatcher.handle_timeout(now);
+        self.settle(now);
     }
 
-    /// The driver could not execute what was handed over. It is tried again while that makes sense.
-    pub fn handle_failed(&mut self, now: Time, id: &str, reason: &str) {
+    /// The driver could not execute what was handed over, or in case of `doubt` nobody knows. It is tried again while that
+    /// makes sense.
+    pub fn handle_failed(&mut self, now: Time, id: &str, reason: &str, doubt: bool) {
         let patience = self.patience;
         let Some(order) = self.orders.iter_mut().find(|order| order.id == id) else { return };
         if self.over || !matches!(order.state, State::Sent) {
             return;
         }
         order.failed(now, reason, patience);
+        // One that says no had not done it before either.
+        order.doubtful = doubt;
         self.changes += 1;
         self.settle(now);
     }
@@ -263,8 +305,12 @@ impl Executive {
             let order = &mut self.orders[at];
             if order.state == State::Sent {
                 if unsent.contains(&order.id) {
-                    order.started = now;
+                    // It was never tried, and may be too late by now.
+                    order.attempts -= 1;
+                    order.state = State::Waiting(now);
+                    continue;
                 }
+                order.doubtful = true;
                 order.attempts += 1;
                 self.send(at);
             }
@@ -376,6 +422,12 @@ impl Executive {
             Reception::Impossible { earliest: None, .. } => {
                 let start = self.network().label(self.dispatcher.root(event));
                 Answer::Ignored(format!("`{name}` cannot have happened: `{start}` has not been executed"))
+            }
+            // From where to plan anew is known when nothing is in flight.
+            Reception::Impossible { .. } if self.dispatcher.has_in_flight() => {
+                self.held.push((arrived, event));
+                self.changes += 1;
+                Answer::Accepted
             }
             Reception::Impossible { earliest: Some(earliest), latest } => {
                 let window = match latest {
@@ -491,6 +543,7 @@ impl Executive {
                 attempts: 1,
                 state: State::Sent,
                 reason: String::new(),
+                doubtful: false,
             });
             self.send(self.orders.len() - 1);
         }
@@ -502,37 +555,52 @@ impl Executive {
         self.outputs.push_back(Output::Send(Sending { id, name, companion, due, latest, attempt: attempts }));
     }
 
+    /// When it is too late for an order, our lateness allowed for; `None` if it never is.
+    fn closes(&self, at: usize) -> Option<Time> {
+        let order = &self.orders[at];
+        match self.dispatcher.latest(order.event) {
+            Some(latest) => Some(latest.checked_add(self.lateness).unwrap_or(latest)),
+            None if self.dispatcher.is_in_flight(order.event) => None,
+            None => Some(order.closes),
+        }
+    }
+
     /// Tries again what failed, or gives up when its window has closed.
     fn look_after(&mut self, at: usize, now: Time) {
-        let order = &self.orders[at];
-        let State::Waiting(again) = order.state else { return };
-        let flying = self.dispatcher.is_in_flight(order.event);
-        let closes = match self.dispatcher.latest(order.event) {
-            Some(latest) => Some(latest.checked_add(self.lateness).unwrap_or(latest)),
-            None if flying => None,
-            None => Some(order.closes),
-        };
+        let State::Waiting(again) = self.orders[at].state else { return };
+        let closes = self.closes(at);
+        let latest = self.dispatcher.latest(self.orders[at].event);
         if closes.is_some_and(|closes| now > closes) {
             if !self.over {
-                let detail = format!(
-                    "the driver could not execute `{}` in time, after {} attempts: {}",
-                    order.name, order.attempts, order.reason
-                );
-                let event = order.event;
-                self.dispatcher.handle_failed(now, event);
-                self.fail(event, now, "driver-failed", detail);
+                self.give_up(at, now);
             }
         } else if now >= again {
             let order = &mut self.orders[at];
             order.attempts += 1;
-            order.started = now;
+            if !order.doubtful {
+                order.started = now;
+            }
             order.state = State::Sent;
             self.changes += 1;
             self.send(at);
-        } else if let Some(closes) = closes.filter(|&closes| closes < again) {
+        } else if let Some(latest) = latest.filter(|&latest| now < latest && latest < again) {
             // One last time while it is open.
-            self.orders[at].state = State::Waiting(closes.max(now));
+            self.orders[at].state = State::Waiting(latest);
+        } else if let Some(closes) = closes.filter(|&closes| closes < again) {
+            self.orders[at].state = State::Waiting(Time::from_micros(closes.as_micros().saturating_add(1)));
         }
+    }
+
+    fn give_up(&mut self, at: usize, now: Time) {
+        let Order { event, name, attempts, reason, .. } = self.orders[at].clone();
+        self.dispatcher.handle_failed(now, event);
+        if attempts == 0 {
+            let detail = format!("`{name}` was not handed over in its window: nobody was there to do it");
+            return self.fail(event, now, "missed-window", detail);
+        }
+        let times = if attempts == 1 { "1 attempt".to_string() } else { format!("{attempts} attempts") };
+        let detail = format!("the driver could not execute `{name}` in time, after {times}: {reason}");
+        self.fail(event, now, "driver-failed", detail);
     }
 
     fn fail(&mut self, event: EventId, now: Time, reason: &str, detail: String) {

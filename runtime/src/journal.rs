@@ -62,6 +62,9 @@ pub enum Record {
         id: String,
         /// Why.
         reason: String,
+        /// True if it may have executed it all the same.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        doubt: bool,
     },
     /// A new plan was ready.
     Rebuilt {
@@ -91,7 +94,7 @@ pub enum Record {
         /// 1 for the first.
         attempt: u32,
     },
-    /// Came of it: a dispatch leaves now.
+    /// A dispatch leaves now, or would if its window were still open.
     Sent {
         /// The dispatch.
         id: String,

@@ -19,6 +19,8 @@ pub(crate) struct Order {
     pub(crate) state: State,
     /// Why the last attempt failed.
     pub(crate) reason: String,
+    /// An attempt may have succeeded without our hearing of it: then the first one counts.
+    pub(crate) doubtful: bool,
 }
 
 /// Where an order is.

@@ -56,7 +56,7 @@ impl Replay {
                 executive.handle_news(at, event);
             }
             Record::Executed { id, ago } => executive.handle_executed(at, id, ago.map(|ago| ago.0)),
-            Record::Failed { id, reason } => executive.handle_failed(at, id, reason),
+            Record::Failed { id, reason, doubt } => executive.handle_failed(at, id, reason, *doubt),
             Record::Rebuilt { from } => {
                 let from = Time::from_micros(from.0.as_micros());
                 let rebuild = executive.poll_rebuild(from).ok_or("there is nothing to plan anew here")?;
@@ -84,7 +84,10 @@ impl Replay {
                 }
                 self.unsent.push(id.clone());
             }
-            Record::Sent { id } => self.unsent.retain(|unsent| unsent != id),
+            Record::Sent { id } => {
+                executive.handle_sent(at, id);
+                self.unsent.retain(|unsent| unsent != id);
+            }
             Record::Ahead { due, .. } => self.ahead = Some(Time::from_micros(due.0.as_micros())),
             Record::Warning { .. } | Record::Ignored { .. } => {}
             Record::End { execution } => {

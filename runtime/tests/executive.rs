@@ -27,12 +27,16 @@ fn cases(usual: u64) -> u64 {
 }
 
 /// How the world is.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct World {
     /// Everything takes up to so many microseconds: waking up, the driver, planning anew. Also what counts as on time.
     slow: i64,
     /// Of 100 attempts the driver fails so many.
     fails: u32,
+    /// Of 100 good answers of the driver so many are lost: it is asked again.
+    lost: u32,
+    /// How many microseconds before it is due an event is handed over.
+    lead: i64,
     /// Of 100 steps the process dies after so many, and is back at once.
     dies: u32,
 }
@@ -41,7 +45,7 @@ struct World {
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Coming {
     News(EventId),
-    Answer { id: String, good: bool },
+    Answer { id: String, good: bool, lost: bool },
 }
 
 struct Life {
@@ -69,7 +73,8 @@ impl Life {
             run: "run".into(),
             settings: Settings {
                 strategy,
-                lateness: Duration::from_micros(world.slow),
+                lead: Duration::from_micros(world.lead),
+                lateness: Duration::from_micros(world.slow.max(world.lead)),
                 ..Settings::default()
             },
             handovers: handovers(plan.network(), None, Scope::All),
@@ -206,13 +211,13 @@ impl Life {
                     assert!(matches!(again, Answer::Ignored(_)), "{again:?}");
                 }
             }
-            Coming::Answer { id, good: true } => {
+            Coming::Answer { id, good: true, lost: false } => {
                 self.record(now, Record::Executed { id: id.clone(), ago: None });
                 self.executive.handle_executed(Time::from_micros(now), &id, None);
             }
-            Coming::Answer { id, good: false } => {
-                self.record(now, Record::Failed { id: id.clone(), reason: "no".into() });
-                self.executive.handle_failed(Time::from_micros(now), &id, "no");
+            Coming::Answer { id, lost, .. } => {
+                self.record(now, Record::Failed { id: id.clone(), reason: "no".into(), doubt: lost });
+                self.executive.handle_failed(Time::from_micros(now), &id, "no", lost);
             }
         }
         Ok(())
@@ -243,11 +248,16 @@ impl Life {
             }
         }
         for sending in sends {
+            let leaves = self.executive.handle_sent(Time::from_micros(now), &sending.id);
             self.record(now, Record::Sent { id: sending.id.clone() });
+            if !leaves {
+                continue;
+            }
             let answer = now + self.soon();
             // It never fails more than twice, and never after it was done.
             let known = self.done.contains_key(&sending.id);
             let good = known || sending.attempt > 2 || self.random.u32(0..100) >= self.world.fails;
+            let lost = good && sending.attempt < 3 && self.random.u32(0..100) < self.world.lost;
             if good && !known {
                 self.done.insert(sending.id.clone(), now);
                 let event = self.network.find(&sending.name).unwrap();
@@ -259,7 +269,7 @@ impl Life {
                     self.happens(event, now, nature)?;
                 }
             }
-            self.coming.push(Reverse((answer, Coming::Answer { id: sending.id, good })));
+            self.coming.push(Reverse((answer, Coming::Answer { id: sending.id, good, lost })));
         }
         if let Some(rebuild) = self.executive.poll_rebuild(Time::from_micros(now)) {
             let ready = now + self.soon();
@@ -321,7 +331,7 @@ impl Life {
             };
             let length = to - from;
             // Each end may be as late as is allowed, and so may news be that Nature sends on time.
-            let slack = 2 * self.world.slow;
+            let slack = 2 * (self.world.slow + self.world.lead);
             let low = requirement.lower.finite().is_some_and(|lower| length < lower.as_micros() - slack);
             let high = requirement.upper.finite().is_some_and(|upper| length > upper.as_micros() + slack);
             if low || high {
@@ -383,21 +393,32 @@ fn missions_hold(world: World, usual: u64) {
 
 #[test]
 fn with_a_driver_that_confirms_at_once_missions_hold_to_the_microsecond() {
-    missions_hold(World { slow: 0, fails: 0, dies: 0 }, 500);
+    missions_hold(World { slow: 0, fails: 0, dies: 0, ..World::default() }, 500);
 }
 
 #[test]
 fn whatever_is_late_within_bounds_missions_hold_within_them() {
-    missions_hold(World { slow: 90_000, fails: 0, dies: 0 }, 500);
+    missions_hold(World { slow: 90_000, fails: 0, dies: 0, ..World::default() }, 500);
 }
 
 #[test]
 fn a_process_that_dies_at_any_step_goes_on_as_if_nothing_had_happened() {
-    missions_hold(World { slow: 0, fails: 0, dies: 30 }, 300);
-    missions_hold(World { slow: 90_000, fails: 0, dies: 30 }, 300);
+    missions_hold(World { slow: 0, fails: 0, dies: 30, ..World::default() }, 300);
+    missions_hold(World { slow: 90_000, fails: 0, dies: 30, ..World::default() }, 300);
 }
 
 #[test]
 fn an_attempt_that_fails_is_made_again() {
-    missions_hold(World { slow: 90_000, fails: 30, dies: 10 }, 300);
+    missions_hold(World { slow: 90_000, fails: 30, dies: 10, ..World::default() }, 300);
+}
+
+#[test]
+fn an_answer_that_is_lost_does_not_move_what_was_done() {
+    missions_hold(World { slow: 90_000, lost: 30, ..World::default() }, 300);
+}
+
+#[test]
+fn what_is_handed_over_early_is_recorded_when_the_requirements_hold() {
+    missions_hold(World { lead: 500_000, ..World::default() }, 500);
+    missions_hold(World { slow: 90_000, lead: 500_000, dies: 10, ..World::default() }, 300);
 }

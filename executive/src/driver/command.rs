@@ -8,7 +8,7 @@ use tokio::process::{Child, Command};
 use tokio::sync::mpsc::UnboundedReceiver;
 
 use super::{Order, Treatment, next};
-use crate::desk::Desk;
+use crate::desk::{Desk, Failed};
 
 /// What may be in a name that is put between quotes which are not ours.
 fn is_harmless(character: char) -> bool {
@@ -51,7 +51,7 @@ pub(super) async fn run(
             tokio::task::spawn_local(async move {
                 match attempt(&template, &sending, treatment).await {
                     Ok(()) => desk.executed(sending.id, None),
-                    Err(reason) => desk.failed(sending.id, reason),
+                    Err(failure) => desk.failed(sending.id, failure),
                 }
             });
         }
@@ -59,20 +59,22 @@ pub(super) async fn run(
     local.run_until(work).await;
 }
 
-async fn attempt(template: &str, sending: &Sending, treatment: Treatment) -> Result<(), String> {
+async fn attempt(template: &str, sending: &Sending, treatment: Treatment) -> Result<(), Failed> {
     let event = original_spelling(&sending.name);
     let companion = sending.companion.as_deref().map_or("NIL".to_string(), original_spelling);
     let mut command = shell(&fill(template, &event, &companion), treatment.silent);
     command.env("KIRK_EVENT", event).env("KIRK_COMPANION", companion).env("KIRK_DISPATCH_ID", &sending.id);
-    let mut child = command.spawn().map_err(|error| format!("the shell cannot be started: {error}"))?;
+    let mut child =
+        command.spawn().map_err(|error| Failed::surely(format!("the shell cannot be started: {error}")))?;
     match tokio::time::timeout(treatment.limit, child.wait()).await {
         Ok(Ok(status)) if status.success() => Ok(()),
-        Ok(Ok(status)) => Err(format!("the command ended with {status}")),
-        Ok(Err(error)) => Err(format!("the command is lost: {error}")),
+        Ok(Ok(status)) => Err(Failed::surely(format!("the command ended with {status}"))),
+        Ok(Err(error)) => Err(Failed::perhaps(format!("the command is lost: {error}"))),
         Err(_) => {
             kill(&child);
             let _ = child.wait().await;
-            Err(format!("the command took longer than {} s", treatment.limit.as_secs_f64()))
+            let limit = treatment.limit.as_secs_f64();
+            Err(Failed::perhaps(format!("the command took longer than {limit} s")))
         }
     }
 }

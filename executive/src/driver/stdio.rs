@@ -9,14 +9,14 @@ use std::time::Duration as Real;
 
 use serde::Deserialize;
 use serde_json::{Value, json};
-use tokio::io::{AsyncBufReadExt, AsyncWriteExt, BufReader, Lines};
+use tokio::io::{AsyncBufReadExt, AsyncWriteExt, BufReader};
 use tokio::process::{Child, ChildStdin, ChildStdout, Command};
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use tokio::time::{Instant, sleep_until, timeout};
 
 use super::command::{kill, shell};
 use super::{Order, Treatment, dispatch};
-use crate::desk::Desk;
+use crate::desk::{Desk, Failed};
 
 /// What a child may say, one of them in each line.
 #[derive(Debug, Deserialize)]
@@ -56,8 +56,17 @@ const AGAIN: (Real, Real) = (Real::from_millis(100), Real::from_secs(5));
 struct Conversation {
     child: Child,
     input: ChildStdin,
-    output: Lines<BufReader<ChildStdout>>,
+    output: BufReader<ChildStdout>,
+    /// The beginning of a line.
+    partial: Vec<u8>,
+    /// How many lines made no sense.
+    nonsense: u32,
 }
+
+/// A longer line makes no sense, and is not kept.
+const LONGEST_LINE: usize = 64 * 1024;
+/// So many lines that make no sense are told of.
+const MOST_NONSENSE: u32 = 20;
 
 pub(super) async fn run(
     command: String,
@@ -71,85 +80,102 @@ pub(super) async fn run(
     let mut again = AGAIN.0;
     let mut starts_at = Instant::now();
     let mut conversation: Option<Conversation> = None;
-    // What arrived while no child was there.
-    let mut waiting: Vec<Value> = Vec::new();
-    let mut last_end = String::new();
+    let mut last_end = "it is not started yet".to_string();
     loop {
+        if conversation.is_none() && Instant::now() >= starts_at {
+            match start(&command, treatment.silent) {
+                Ok(started) => {
+                    conversation = Some(started);
+                    tell(&mut conversation, &json!({ "start": greeting })).await;
+                }
+                Err(reason) => {
+                    desk.warn(format!("the driver cannot be started: {reason}"));
+                    last_end = reason;
+                    starts_at = Instant::now() + again;
+                    again = (again * 2).min(AGAIN.1);
+                }
+            }
+        }
         let deadline =
             pending.values().min().copied().unwrap_or_else(|| Instant::now() + Real::from_secs(3600));
         tokio::select! {
             order = inbox.recv() => match order {
+                Some(Order::Send(sending)) if conversation.is_none() => {
+                    desk.failed(sending.id, Failed::surely(format!("the driver is not running ({last_end})")));
+                }
                 Some(Order::Send(sending)) => {
-                    pending.insert(sending.id.clone(), Instant::now() + treatment.limit);
                     let line = json!({ "dispatch": dispatch(&sending) });
-                    if !tell(&mut conversation, &line).await {
-                        waiting.push(line);
+                    if tell(&mut conversation, &line).await {
+                        pending.insert(sending.id, Instant::now() + treatment.limit);
+                    } else {
+                        // Half a line may have been written: nothing more can be said to this child.
+                        desk.failed(sending.id, Failed::perhaps("the driver does not take what it is told"));
+                        desk.warn("the driver does not take what it is told; it is started again".to_string());
+                        give_up(&mut conversation, &mut pending, &desk, "the driver was started again").await;
+                        starts_at = Instant::now();
                     }
                 }
                 Some(Order::Over(execution)) => {
                     let line = json!({ "over": { "outcome": execution.outcome, "failure": execution.failure } });
                     tell(&mut conversation, &line).await;
-                    return farewell(conversation).await;
+                    ended(conversation).await;
+                    return;
                 }
-                None => return farewell(conversation).await,
+                None => {
+                    ended(conversation).await;
+                    return;
+                }
             },
             Some(line) = to_child.recv() => {
                 tell(&mut conversation, &line).await;
             }
-            () = sleep_until(starts_at), if conversation.is_none() => {
-                match start(&command, treatment.silent) {
-                    Ok(started) => {
-                        conversation = Some(started);
-                        tell(&mut conversation, &json!({ "start": greeting })).await;
-                        for line in waiting.drain(..) {
-                            tell(&mut conversation, &line).await;
-                        }
-                    }
-                    Err(reason) => {
-                        desk.warn(format!("the driver cannot be started: {reason}"));
-                        last_end = reason;
-                        starts_at = Instant::now() + again;
-                        again = (again * 2).min(AGAIN.1);
-                    }
-                }
-            }
+            () = sleep_until(starts_at), if conversation.is_none() => {}
             line = hear(&mut conversation), if conversation.is_some() => match line {
                 Ok(Some(line)) => {
                     again = AGAIN.0;
-                    listen(&line, &mut pending, &desk, &answers);
+                    if let Some(conversation) = &mut conversation {
+                        listen(&line, conversation, &mut pending, &desk, &answers);
+                    }
                 }
                 Ok(None) | Err(_) => {
                     let why = ended(conversation.take()).await;
                     desk.warn(format!("the driver ended ({why}); it is started again"));
-                    fail_all(&mut pending, &mut waiting, &desk, &format!("the driver ended ({why})"));
+                    fail_all(&mut pending, &desk, &format!("the driver ended ({why})"));
                     starts_at = Instant::now() + again;
                     again = (again * 2).min(AGAIN.1);
-                    last_end = why;
+                    last_end = format!("it ended: {why}");
                 }
             },
             () = sleep_until(deadline), if !pending.is_empty() => {
                 let limit = treatment.limit.as_secs_f64();
-                let Some(hung) = conversation.take() else {
-                    fail_all(&mut pending, &mut waiting, &desk, &format!("the driver ended ({last_end})"));
-                    continue;
-                };
                 desk.warn(format!("the driver has not answered within {limit} s; it is started again"));
-                fail_all(&mut pending, &mut waiting, &desk, &format!("no answer within {limit} s"));
-                kill(&hung.child);
-                ended(Some(hung)).await;
+                give_up(&mut conversation, &mut pending, &desk, &format!("no answer within {limit} s")).await;
                 starts_at = Instant::now();
             }
         }
     }
 }
 
+/// Ends a child with which nothing can be done any more.
+async fn give_up(
+    conversation: &mut Option<Conversation>,
+    pending: &mut HashMap<String, Instant>,
+    desk: &Desk,
+    reason: &str,
+) {
+    fail_all(pending, desk, reason);
+    if let Some(hung) = conversation.take() {
+        kill(&hung.child);
+        ended(Some(hung)).await;
+    }
+}
+
 /// What the child was told it will not do any more; the executive decides what is tried again.
-fn fail_all(pending: &mut HashMap<String, Instant>, waiting: &mut Vec<Value>, desk: &Desk, reason: &str) {
-    waiting.clear();
+fn fail_all(pending: &mut HashMap<String, Instant>, desk: &Desk, reason: &str) {
     let mut ids: Vec<String> = std::mem::take(pending).into_keys().collect();
     ids.sort_unstable();
     for id in ids {
-        desk.failed(id, reason.to_string());
+        desk.failed(id, Failed::perhaps(reason));
     }
 }
 
@@ -158,9 +184,13 @@ fn start(command: &str, silent: bool) -> Result<Conversation, String> {
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).kill_on_drop(true);
     let mut child = command.spawn().map_err(|error| error.to_string())?;
     match (child.stdin.take(), child.stdout.take()) {
-        (Some(input), Some(output)) => {
-            Ok(Conversation { child, input, output: BufReader::new(output).lines() })
-        }
+        (Some(input), Some(output)) => Ok(Conversation {
+            child,
+            input,
+            output: BufReader::new(output),
+            partial: Vec::new(),
+            nonsense: 0,
+        }),
         _ => Err("it has no standard input and output".to_string()),
     }
 }
@@ -177,18 +207,40 @@ async fn tell(conversation: &mut Option<Conversation>, line: &Value) -> bool {
     matches!(written.await, Ok(Ok(())))
 }
 
-async fn hear(conversation: &mut Option<Conversation>) -> std::io::Result<Option<String>> {
-    match conversation {
-        Some(conversation) => conversation.output.next_line().await,
-        None => std::future::pending().await,
+/// The next line of the child, `None` at its end. Nothing is lost if this is given up halfway.
+async fn hear(conversation: &mut Option<Conversation>) -> std::io::Result<Option<Vec<u8>>> {
+    let Some(Conversation { output, partial, .. }) = conversation else {
+        return std::future::pending().await;
+    };
+    loop {
+        let available = output.fill_buf().await?;
+        if available.is_empty() {
+            return Ok(Some(std::mem::take(partial)).filter(|rest| !rest.is_empty()));
+        }
+        let end = available.iter().position(|&byte| byte == b'\n');
+        let taken = end.map_or(available.len(), |end| end + 1);
+        // One byte more than the longest shows that it is too long.
+        let room = (LONGEST_LINE + 1).saturating_sub(partial.len());
+        partial.extend_from_slice(&available[..taken.min(room)]);
+        output.consume(taken);
+        if end.is_some() {
+            return Ok(Some(std::mem::take(partial)));
+        }
     }
 }
 
-fn listen(line: &str, pending: &mut HashMap<String, Instant>, desk: &Desk, answers: &UnboundedSender<Value>) {
+fn listen(
+    line: &[u8],
+    conversation: &mut Conversation,
+    pending: &mut HashMap<String, Instant>,
+    desk: &Desk,
+    answers: &UnboundedSender<Value>,
+) {
+    let line = String::from_utf8_lossy(line);
     if line.trim().is_empty() {
         return;
     }
-    match serde_json::from_str(line) {
+    match serde_json::from_str(line.trim()) {
         Ok(Said::Executed(said)) => {
             let (id, ago) = match said {
                 Executed::Id(id) => (id, None),
@@ -200,7 +252,7 @@ fn listen(line: &str, pending: &mut HashMap<String, Instant>, desk: &Desk, answe
         Ok(Said::Failed { id, reason }) => {
             pending.remove(&id);
             let reason = if reason.is_empty() { "the driver says it failed".to_string() } else { reason };
-            desk.failed(id, reason);
+            desk.failed(id, Failed::surely(reason));
         }
         Ok(Said::Observed(observed)) => {
             let names = match observed {
@@ -217,10 +269,19 @@ fn listen(line: &str, pending: &mut HashMap<String, Instant>, desk: &Desk, answe
             );
         }
         Err(error) => {
+            conversation.nonsense += 1;
             let start: String = line.chars().take(80).collect();
-            desk.warn(format!(
-                "the driver said `{start}`, which kirk does not understand ({error}); {EXPECTED}"
-            ));
+            let start = start.trim();
+            match conversation.nonsense {
+                ..MOST_NONSENSE => desk.warn(format!(
+                    "the driver said `{start}`, which kirk does not understand ({error}); {EXPECTED}"
+                )),
+                MOST_NONSENSE => desk.warn(
+                    "the driver says more that kirk does not understand; that is not shown any more"
+                        .to_string(),
+                ),
+                _ => {}
+            }
         }
     }
 }
@@ -236,8 +297,4 @@ async fn ended(conversation: Option<Conversation>) -> String {
             "it closed its output and was ended".to_string()
         }
     }
-}
-
-async fn farewell(conversation: Option<Conversation>) {
-    ended(conversation).await;
 }

@@ -9,7 +9,7 @@ use tokio::net::TcpStream;
 use tokio::sync::mpsc::UnboundedReceiver;
 
 use super::{Order, Treatment, dispatch, next};
-use crate::desk::Desk;
+use crate::desk::{Desk, Failed};
 
 /// Where to post.
 #[derive(Clone, Debug)]
@@ -61,10 +61,10 @@ pub(super) async fn run(url: String, treatment: Treatment, mut inbox: UnboundedR
                 let answer = tokio::time::timeout(treatment.limit, post(&address, &sending)).await;
                 match answer {
                     Ok(Ok(())) => desk.executed(sending.id, None),
-                    Ok(Err(reason)) => desk.failed(sending.id, reason),
+                    Ok(Err(failure)) => desk.failed(sending.id, failure),
                     Err(_) => {
                         let limit = treatment.limit.as_secs_f64();
-                        desk.failed(sending.id, format!("no answer within {limit} s"));
+                        desk.failed(sending.id, Failed::perhaps(format!("no answer within {limit} s")));
                     }
                 }
             });
@@ -73,11 +73,14 @@ pub(super) async fn run(url: String, treatment: Treatment, mut inbox: UnboundedR
     local.run_until(work).await;
 }
 
-async fn post(address: &Address, sending: &Sending) -> Result<(), String> {
+async fn post(address: &Address, sending: &Sending) -> Result<(), Failed> {
     let connected = TcpStream::connect((address.socket.0.as_str(), address.socket.1)).await;
-    let stream = connected.map_err(|error| format!("cannot reach {}: {error}", address.authority))?;
+    let stream =
+        connected.map_err(|error| Failed::surely(format!("cannot reach {}: {error}", address.authority)))?;
     let _ = stream.set_nodelay(true);
-    let lost = |error: hyper::Error| format!("{} did not answer properly: {error}", address.authority);
+    let lost = |error: hyper::Error| {
+        Failed::perhaps(format!("{} did not answer properly: {error}", address.authority))
+    };
     let (mut sender, connection) =
         hyper::client::conn::http1::handshake(TokioIo::new(stream)).await.map_err(lost)?;
     let connection = tokio::task::spawn_local(connection);
@@ -88,7 +91,7 @@ async fn post(address: &Address, sending: &Sending) -> Result<(), String> {
         .header("Idempotency-Key", sending.id.as_str())
         .header("Connection", "close")
         .body(Full::new(Bytes::from(body)))
-        .map_err(|error| format!("the request cannot be made: {error}"))?;
+        .map_err(|error| Failed::surely(format!("the request cannot be made: {error}")))?;
     let answer = sender.send_request(request).await.map_err(lost)?;
     let status = answer.status();
     let result = if status.is_success() {
@@ -100,7 +103,7 @@ async fn post(address: &Address, sending: &Sending) -> Result<(), String> {
             text.map(|body| String::from_utf8_lossy(&body.to_bytes()).trim().to_string()).unwrap_or_default();
         let first = text.lines().next().unwrap_or_default();
         let colon = if first.is_empty() { "" } else { ": " };
-        Err(format!("{} answered {status}{colon}{first}", address.authority))
+        Err(Failed::surely(format!("{} answered {status}{colon}{first}", address.authority)))
     };
     connection.abort();
     result

@@ -10,12 +10,11 @@ impl Dispatcher {
     /// What is to be planned anew because of news, if anything is. While events are in flight it is not known from where
     /// to plan, so that has to wait.
     pub fn poll_rebuild(&mut self, now: Time) -> Option<Rebuild> {
-        self.now = self.now.max(now.as_micros());
         if !self.stale || self.asked || !self.in_flight.is_empty() || self.missed.is_some() {
             return None;
         }
         self.asked = true;
-        Some(self.rebuild())
+        Some(self.rebuild(self.now.max(now.as_micros())))
     }
 
     /// Goes on with a new plan. Returns false if it came too late: something has happened since, and it has to be asked for
@@ -44,7 +43,7 @@ impl Dispatcher {
     }
 
     /// Puts what is known in place of the links, for what is left to be planned anew.
-    pub(super) fn rebuild(&mut self) -> Rebuild {
+    pub(super) fn rebuild(&mut self, from: i64) -> Rebuild {
         let network = self.plan.shared_network();
         self.knowledge.settle_ancestors(&network);
         let happened = self.knowledge.all_happened(&network);
@@ -57,7 +56,7 @@ impl Dispatcher {
                 _ => None,
             })
             .collect();
-        Rebuild::new(network, Time::from_micros(self.now), known, self.version)
+        Rebuild::new(network, Time::from_micros(from), known, self.version)
     }
 
     /// Follows a new plan; false if there is none.
@@ -72,17 +71,12 @@ impl Dispatcher {
         self.reduction = reduction;
         self.active.clear();
         self.activate_from_origin();
-        for flight in &mut self.in_flight {
-            flight.node = self.reduction.places[flight.event.index()].node;
-            flight.due = flight.due.max(planned);
-            self.agenda.take(flight.node);
-        }
         for event in self.plan.network().event_ids() {
             let known = *self.known(event);
             if known.settled && known.fixed.is_none() {
                 let (time, how) = match known.observed.map(Time::as_micros) {
                     // Lateness of ours is not held against the news.
-                    Some(heard) if self.recorded(heard, planned) == heard => (heard, How::Observed),
+                    Some(heard) if self.recorded(heard, planned, planned) == heard => (heard, How::Observed),
                     Some(_) => (planned, How::Buffered),
                     None => (planned, How::Imagined),
                 };

@@ -32,7 +32,7 @@ pub fn check(network: &Network) -> Result<Verdict, TooLarge> {
         Ok(reduction) if is_controllable(&reduction.stnu)? => Verdict::Controllable,
         reduction => match explain(&merged.network, reduction)? {
             Some(conflict) => Verdict::Uncontrollable(merged.unmerge(&conflict, network)),
-            None => unreachable!("the search that keeps records takes the same way as the one that does not"),
+            None => unreachable!("the search that explains agrees with the one that only decides"),
         },
     })
 }

@@ -59,12 +59,12 @@ pub(crate) struct Solution {
 
 /// Is the network dynamically controllable?
 pub fn is_controllable(stnu: &Stnu) -> Result<bool, TooLarge> {
-    Ok(Search::new(stnu, false).run()?.is_none())
+    Ok(Search::new(stnu, Purpose::Decide).run()?.is_none())
 }
 
 /// A semi-reducible negative cycle, `None` if the network is controllable. The same one on every run.
 pub fn negative_cycle(stnu: &Stnu) -> Result<Option<Cycle>, TooLarge> {
-    let mut search = Search::new(stnu, true);
+    let mut search = Search::new(stnu, Purpose::Explain);
     Ok(match search.run()? {
         None => None,
         Some(cycle) => Some(search.count(cycle)?),
@@ -73,7 +73,7 @@ pub fn negative_cycle(stnu: &Stnu) -> Result<Option<Cycle>, TooLarge> {
 
 /// The derived edges, waits and potentials of a controllable network, `None` if it is not controllable.
 pub(crate) fn solve(stnu: &Stnu) -> Result<Option<Solution>, TooLarge> {
-    let mut search = Search::new(stnu, false);
+    let mut search = Search::new(stnu, Purpose::Solve);
     Ok(match search.run()? {
         None => {
             let derived = search.edges.split_off(search.derived_from);
@@ -98,6 +98,17 @@ enum Move {
 #[inline]
 fn incoming_of(incoming_at: &[u32], node: u32) -> std::ops::Range<usize> {
     incoming_at[node as usize] as usize..incoming_at[node as usize + 1] as usize
+}
+
+/// What a search is for, and so what it keeps.
+#[derive(Clone, Copy, PartialEq)]
+enum Purpose {
+    /// Yes or no.
+    Decide,
+    /// A negative cycle: how each derived edge came about.
+    Explain,
+    /// What there is to wait for.
+    Solve,
 }
 
 enum Found {
@@ -139,7 +150,7 @@ struct Incoming {
 
 struct Search<'a> {
     stnu: &'a Stnu,
-    /// Ordinary, lower-case and derived edges.
+    /// Ordinary and lower-case edges, to decide also the ordinary edge that each link implies, and derived edges.
     edges: Vec<Edge>,
     lower_from: usize,
     derived_from: usize,
@@ -162,13 +173,13 @@ struct Search<'a> {
     reached: Vec<u32>,
     improved: Vec<(u32, EdgeId)>,
     waits: Vec<Wait>,
-    /// Kept only if asked for: how each derived edge came about.
-    recording: bool,
+    purpose: Purpose,
+    /// How each derived edge came about, to explain it.
     derivations: Vec<Vec<Move>>,
 }
 
 impl<'a> Search<'a> {
-    fn new(stnu: &'a Stnu, recording: bool) -> Search<'a> {
+    fn new(stnu: &'a Stnu, purpose: Purpose) -> Search<'a> {
         let count = stnu.nodes as usize;
         let mut edges = stnu.edges.clone();
         let lower_from = edges.len();
@@ -177,6 +188,14 @@ impl<'a> Search<'a> {
             to: l.contingent,
             weight: l.lower,
         }));
+        if purpose == Purpose::Decide {
+            // For the first potentials alone; see there.
+            edges.extend(stnu.links.iter().map(|l| Edge {
+                from: l.contingent,
+                to: l.activation,
+                weight: -l.lower,
+            }));
+        }
         let by_target = Rows::new(stnu.nodes, stnu.edges.iter().map(|e| e.to));
         let mut incoming = Vec::with_capacity(stnu.edges.len());
         let mut incoming_at = Vec::with_capacity(count + 1);
@@ -214,7 +233,7 @@ impl<'a> Search<'a> {
             reached: Vec::new(),
             improved: Vec::new(),
             waits: Vec::new(),
-            recording,
+            purpose,
             derivations: Vec::new(),
         }
     }
@@ -285,10 +304,11 @@ impl<'a> Search<'a> {
         self.queue.restart(key);
         self.queue.push(key, source);
         while let Some((_, node)) = self.queue.pop() {
-            if self.node(node).expanded == self.round {
+            let Node { distance, expanded, ending, .. } = self.nodes[node as usize];
+            if expanded == self.round {
                 continue;
             }
-            let distance = within_limit(self.node(node).distance)?;
+            let distance = within_limit(distance)?;
             self.nodes[node as usize].expanded = self.round;
             if self.undone[node as usize] > 0 {
                 let undone = |link: &&u32| self.state[**link as usize] != State::Done;
@@ -296,57 +316,50 @@ impl<'a> Search<'a> {
                     return Ok(Found::DoFirst(first));
                 }
             }
-            match self.lower_into(node) {
+            // One step: `from` is at this distance from the source by `edge`.
+            let mut relax = |from: u32, edge: EdgeId, distance: i64| {
+                if from == source {
+                    loops_back |= distance < width;
+                    return;
+                }
+                let node = &mut self.nodes[from as usize];
+                if node.reached == self.round {
+                    if distance >= node.distance {
+                        return;
+                    }
+                } else {
+                    node.reached = self.round;
+                    self.reached.push(from);
+                }
+                node.distance = distance;
+                node.via = edge;
+                if distance < width {
+                    // Reduced by the potentials, every edge is non-negative; see `Solution::potential`.
+                    self.queue.push(distance - node.potential, from);
+                }
+            };
+            if ending != NONE && node != source {
                 // Out of a contingent event the search goes on by its lower-case edge alone: what else is close to it
                 // has an edge to its activation, or waits for it.
-                Some(lower) if node != source => {
-                    let Edge { from, weight, .. } = self.edges[lower as usize];
-                    loops_back |= self.relax(source, width, from, lower, weight + distance);
-                }
-                _ => {
-                    for at in incoming_of(&self.incoming_at, node) {
-                        let Incoming { from, edge, weight } = self.incoming[at];
-                        loops_back |= self.relax(source, width, from, edge, weight + distance);
-                    }
-                    let mut edge = self.derived_in[node as usize];
-                    while edge != NONE {
-                        let Edge { from, weight, .. } = self.edges[edge as usize];
-                        loops_back |= self.relax(source, width, from, edge, weight + distance);
-                        edge = self.before_in[edge as usize - self.derived_from];
-                    }
-                }
+                let lower = self.lower_from as u32 + ending;
+                let Edge { from, weight, .. } = self.edges[lower as usize];
+                relax(from, lower, weight + distance);
+                continue;
+            }
+            for &Incoming { from, edge, weight } in &self.incoming[incoming_of(&self.incoming_at, node)] {
+                relax(from, edge, weight + distance);
+            }
+            let mut edge = self.derived_in[node as usize];
+            while edge != NONE {
+                let Edge { from, weight, .. } = self.edges[edge as usize];
+                relax(from, edge, weight + distance);
+                edge = self.before_in[edge as usize - self.derived_from];
             }
         }
         if loops_back && let Some(cycle) = self.negative_from_contingent(link)? {
             return Ok(Found::Cycle(cycle));
         }
         self.derive(link)
-    }
-
-    /// One step of the backward search: `from` is at this distance from the source by `edge`. True if it is the source
-    /// itself, closer than the width.
-    #[inline(always)]
-    fn relax(&mut self, source: u32, width: i64, from: u32, edge: EdgeId, distance: i64) -> bool {
-        if from == source {
-            return distance < width;
-        }
-        let node = &mut self.nodes[from as usize];
-        if node.reached == self.round {
-            if distance >= node.distance {
-                return false;
-            }
-        } else {
-            node.reached = self.round;
-            self.reached.push(from);
-        }
-        node.distance = distance;
-        node.via = edge;
-        if distance < width {
-            // Reduced by the potentials, every edge is non-negative; see `Solution::potential`.
-            let key = distance - node.potential;
-            self.queue.push(key, from);
-        }
-        false
     }
 
     /// C lies on a cycle shorter than the width of its link. If a node on the way round comes before C, then knowing
@@ -418,7 +431,7 @@ impl<'a> Search<'a> {
             let Node { distance, expanded, ending, potential, .. } = *self.node(node);
             let weight = add(distance, -here.upper)?;
             if expanded == self.round {
-                if node != here.contingent && ending == NONE {
+                if self.purpose == Purpose::Solve && node != here.contingent && ending == NONE {
                     self.waits.push(Wait { waiter: node, link, weight });
                 }
                 continue;
@@ -431,7 +444,7 @@ impl<'a> Search<'a> {
                 }
                 continue;
             }
-            if self.recording {
+            if self.purpose == Purpose::Explain {
                 let mut derivation = self.way_to_contingent(node, link);
                 derivation.push(Move::Upper(link));
                 self.derivations.push(derivation);

@@ -61,28 +61,19 @@ fn merge_with(network: &Network, caution: Caution) -> Result<Merged, Vec<ModelEr
         }
     }
     let mut event_of = vec![EventId(u32::MAX); count];
-    let mut members: Vec<Vec<EventId>> = Vec::new();
+    let mut events: Vec<Event> = Vec::with_capacity(count);
     for event in network.event_ids() {
         let root = classes.root(event).index();
         if event_of[root].0 == u32::MAX {
-            event_of[root] = EventId(members.len() as u32);
-            members.push(Vec::new());
+            event_of[root] = EventId(events.len() as u32);
+            events.push(Event { names: Vec::new() });
         }
         let class = event_of[root];
         event_of[event.index()] = class;
-        members[class.index()].push(event);
+        events[class.index()].names.extend_from_slice(&network.events()[event.index()].names);
     }
-    let events = members
-        .iter()
-        .map(|class| Event {
-            names: class
-                .iter()
-                .flat_map(|event| network.events()[event.index()].names.iter().cloned())
-                .collect(),
-        })
-        .collect();
-    let mut requirements = Vec::new();
-    let mut requirement_of = Vec::new();
+    let mut requirements = Vec::with_capacity(network.requirements().len());
+    let mut requirement_of = Vec::with_capacity(network.requirements().len());
     for (index, requirement) in network.requirements().iter().enumerate() {
         let (from, to) = (event_of[requirement.from.index()], event_of[requirement.to.index()]);
         // Between one event and itself a requirement says nothing, or it contradicts the joins and must stay.
@@ -101,7 +92,8 @@ fn merge_with(network: &Network, caution: Caution) -> Result<Merged, Vec<ModelEr
         })
         .collect();
     let origin = event_of[network.origin().index()];
-    let merged = Network::new(network.name().to_string(), origin, events, requirements, contingents)?;
+    let merged =
+        Network::with_known_names(network.name().to_string(), origin, events, requirements, contingents)?;
     Ok(Merged { network: merged, event_of, requirement_of, joins: root_forest(&tree) })
 }
 
@@ -175,12 +167,13 @@ fn contains_zero(requirement: &Requirement) -> bool {
 fn root_forest(tree: &[Vec<Join>]) -> Vec<Option<Join>> {
     let mut parents = vec![None; tree.len()];
     let mut seen = vec![false; tree.len()];
+    let mut open = Vec::new();
     for root in 0..tree.len() {
         if seen[root] {
             continue;
         }
         seen[root] = true;
-        let mut open = vec![root];
+        open.push(root);
         while let Some(event) = open.pop() {
             for join in &tree[event] {
                 let child = join.towards.index();

@@ -107,9 +107,26 @@ impl Network {
         requirements: Vec<Requirement>,
         contingents: Vec<ContingentLink>,
     ) -> Result<Network, Vec<ModelError>> {
+        let mut errors = faults_of_names(&events);
         let mut network =
             Network { name, origin, link_of: vec![None; events.len()], events, requirements, contingents };
-        let errors = network.validate();
+        network.validate(&mut errors);
+        if errors.is_empty() { Ok(network) } else { Err(errors) }
+    }
+
+    /// The same for events whose names are those of a valid network, shared out anew: they are not looked at again.
+    pub(crate) fn with_known_names(
+        name: String,
+        origin: EventId,
+        events: Vec<Event>,
+        requirements: Vec<Requirement>,
+        contingents: Vec<ContingentLink>,
+    ) -> Result<Network, Vec<ModelError>> {
+        debug_assert_eq!(faults_of_names(&events), []);
+        let mut errors = Vec::new();
+        let mut network =
+            Network { name, origin, link_of: vec![None; events.len()], events, requirements, contingents };
+        network.validate(&mut errors);
         if errors.is_empty() { Ok(network) } else { Err(errors) }
     }
 
@@ -171,31 +188,18 @@ impl Network {
             .map(|index| EventId(index as u32))
     }
 
-    fn validate(&mut self) -> Vec<ModelError> {
-        let mut errors = Vec::new();
+    /// Finds what is wrong with anything but the names, and fills in `link_of`.
+    fn validate(&mut self, errors: &mut Vec<ModelError>) {
         let count = self.events.len() as u32;
         let known = |event: EventId| event.0 < count;
-        let mut names: Vec<&str> =
-            self.events.iter().flat_map(|event| &event.names).map(|name| name.text.as_str()).collect();
-        names.sort_unstable();
-        let mut reported = None;
-        for pair in names.windows(2) {
-            if pair[0] == pair[1] && reported != Some(pair[0]) {
-                reported = Some(pair[0]);
-                errors.push(ModelError::DuplicateName(pair[0].to_string()));
-            }
-        }
-        if self.events.iter().any(|event| event.names.is_empty()) {
-            errors.push(ModelError::Nameless);
-        }
         if !known(self.origin) {
             errors.push(ModelError::UnknownEvent);
-            return errors;
+            return;
         }
         for (index, requirement) in self.requirements.iter().enumerate() {
             if !known(requirement.from) || !known(requirement.to) {
                 errors.push(ModelError::UnknownEvent);
-                return errors;
+                return;
             }
             if let (Bound::Finite(lower), Bound::Finite(upper)) = (requirement.lower, requirement.upper)
                 && lower > upper
@@ -206,7 +210,7 @@ impl Network {
         for (index, link) in self.contingents.iter().enumerate() {
             if !known(link.from) || !known(link.to) {
                 errors.push(ModelError::UnknownEvent);
-                return errors;
+                return;
             }
             if link.lower < Duration::ZERO || link.upper < link.lower {
                 errors.push(ModelError::LinkBounds { index, lower: link.lower, upper: link.upper });
@@ -229,15 +233,14 @@ impl Network {
         {
             errors.push(ModelError::LinkCycle { event: self.label(event).to_string() });
         }
-        errors
     }
 
     /// An event on a cycle of contingent links, if there is one.
     fn link_cycle(&self) -> Option<EventId> {
         // 0: not seen, 1: on the walk in progress, 2: known to lead to an executable event.
         let mut state = vec![0_u8; self.events.len()];
+        let mut walk = Vec::new();
         for start in self.event_ids() {
-            let mut walk = Vec::new();
             let mut event = start;
             while state[event.index()] == 0 {
                 state[event.index()] = 1;
@@ -250,12 +253,31 @@ impl Network {
             if state[event.index()] == 1 && self.link_of(event).is_some() {
                 return Some(event);
             }
-            for event in walk {
+            for event in walk.drain(..) {
                 state[event.index()] = 2;
             }
         }
         None
     }
+}
+
+/// Every event has a name, and no two names are the same.
+fn faults_of_names(events: &[Event]) -> Vec<ModelError> {
+    let mut errors = Vec::new();
+    let mut names: Vec<&str> =
+        events.iter().flat_map(|event| &event.names).map(|name| name.text.as_str()).collect();
+    names.sort_unstable();
+    let mut reported = None;
+    for pair in names.windows(2) {
+        if pair[0] == pair[1] && reported != Some(pair[0]) {
+            reported = Some(pair[0]);
+            errors.push(ModelError::DuplicateName(pair[0].to_string()));
+        }
+    }
+    if events.iter().any(|event| event.names.is_empty()) {
+        errors.push(ModelError::Nameless);
+    }
+    errors
 }
 
 /// The lower-case form of an event name: `+SHOWER::START+` and `Shower:Start` are `shower:start`, `+Z+` is `z`.

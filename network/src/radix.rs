@@ -7,7 +7,7 @@
 /// Items come out by key; equal keys in an order that depends on nothing but the pushes.
 #[derive(Clone, Debug)]
 pub(crate) struct RadixQueue {
-    buckets: Vec<Vec<(u64, u32)>>,
+    buckets: [Vec<(u64, u32)>; 64],
     /// Which buckets have items, one bit each.
     filled: u64,
     last: u64,
@@ -16,15 +16,15 @@ pub(crate) struct RadixQueue {
 impl RadixQueue {
     /// An empty queue.
     pub(crate) fn new() -> RadixQueue {
-        RadixQueue { buckets: vec![Vec::new(); 64], filled: 0, last: 0 }
+        RadixQueue { buckets: std::array::from_fn(|_| Vec::new()), filled: 0, last: 0 }
     }
 
     /// Forgets everything; keys may start anew from any value of at least `least`.
     pub(crate) fn restart(&mut self, least: i64) {
-        for bucket in &mut self.buckets {
-            bucket.clear();
+        while self.filled != 0 {
+            self.buckets[self.filled.trailing_zeros() as usize].clear();
+            self.filled &= self.filled - 1;
         }
-        self.filled = 0;
         self.last = code(least);
     }
 
@@ -47,22 +47,26 @@ impl RadixQueue {
     /// Takes out an item with the least key.
     #[inline]
     pub(crate) fn pop(&mut self) -> Option<(i64, u32)> {
-        if self.filled & 1 == 0 {
-            if self.filled == 0 {
-                return None;
-            }
-            self.redistribute();
+        if self.filled == 0 {
+            return None;
         }
-        let (key, item) = self.buckets[0].pop()?;
-        if self.buckets[0].is_empty() {
-            self.filled &= !1;
+        let mut first = self.filled.trailing_zeros() as usize;
+        if first > 0 && self.buckets[first].len() > 1 {
+            self.redistribute(first);
+            first = 0;
         }
+        // All of bucket 0, or the one item of the first bucket, which is the least of all.
+        let bucket = &mut self.buckets[first];
+        let (key, item) = bucket.pop()?;
+        if bucket.is_empty() {
+            self.filled &= !(1 << first);
+        }
+        self.last = key;
         Some((decode(key), item))
     }
 
     /// Moves the items of the first bucket that has any to lower ones; the least become bucket 0.
-    fn redistribute(&mut self) {
-        let first = self.filled.trailing_zeros() as usize;
+    fn redistribute(&mut self, first: usize) {
         let mut items = std::mem::take(&mut self.buckets[first]);
         self.filled &= !(1 << first);
         self.last = items.iter().map(|&(key, _)| key).min().unwrap_or(self.last);

@@ -7,9 +7,12 @@
 mod oracle;
 
 use kirk_network::check::conflict;
+use kirk_network::controllability::{is_controllable, negative_cycle};
 use kirk_network::merge::merge;
+use kirk_network::reduce::{Reduction, reduce};
 use kirk_network::{
     Bound, Conflict, ContingentLink, Delay, Duration, EventId, Network, Part, Requirement, Verdict, check,
+    dispatchable,
 };
 use oracle::random::{self, Random, Shape};
 use oracle::{closure, game};
@@ -43,6 +46,19 @@ fn without_delays_the_verdict_is_that_of_the_labelled_closure() {
     let shapes = [Shape::tiny(), Shape::tiny().chained(), Shape::medium(), Shape::medium().chained()];
     let no_delays = shapes.map(|shape| Shape { fixed: 0, variable: 0, infinite: 0, ..shape });
     holds(4000, &no_delays, |network, _| controllable(network) == closure::dynamically_controllable(network));
+}
+
+#[test]
+fn deciding_explaining_and_solving_agree() {
+    let shapes = [Shape::tiny_delayed(), Shape::medium(), Shape::medium().chained()];
+    holds(4000, &shapes, |network, _| match reduce(&merge(network).network) {
+        Ok(Reduction { stnu, .. }) => {
+            let decided = is_controllable(&stnu).unwrap();
+            decided == negative_cycle(&stnu).unwrap().is_none()
+                && decided == dispatchable(&stnu).unwrap().is_some()
+        }
+        Err(_) => !controllable(network),
+    });
 }
 
 #[test]

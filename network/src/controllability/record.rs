@@ -1,6 +1,6 @@
 //! How a negative cycle came about, in terms of the edges the network was given with.
 
-use super::{Cycle, Move, Search, Step};
+use super::{Cycle, Move, Purpose, Search, Step};
 use crate::stnu::{TooLarge, add};
 
 impl Search<'_> {
@@ -19,7 +19,7 @@ impl Search<'_> {
 
     /// The way of the last backward search from `node` to the contingent event of `link`.
     pub(super) fn way_to_contingent(&self, node: u32, link: u32) -> Vec<Move> {
-        if !self.recording {
+        if self.purpose != Purpose::Explain {
             return Vec::new();
         }
         let end = self.stnu.links[link as usize].contingent;

@@ -112,8 +112,6 @@ pub(crate) struct Run {
     /// The seed of `--nature random`.
     #[arg(long, default_value_t = 0, value_name = "N", requires = "simulate", help_heading = "Simulation")]
     pub(crate) seed: u64,
-    #[command(flatten)]
-    pub(crate) live: Live,
     /// What to do with news that says more than the plan assumed.
     #[arg(long, value_enum, default_value_t = StrategyName::Optimistic)]
     pub(crate) strategy: StrategyName,
@@ -126,6 +124,8 @@ pub(crate) struct Run {
     /// How to print the result.
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
     pub(crate) format: TextOrJson,
+    #[command(flatten)]
+    pub(crate) live: Live,
 }
 
 /// How a mission is executed in real time.

@@ -13,9 +13,11 @@
 //! knows no delays. It allows one edge from one node to another, so of several requirements between two events the
 //! tightest bounds are written. The tool itself reads whole numbers only.
 //!
-//! What is our own: a node may carry a `Names` datum, the names of its event as a JSON list, when its id is not its only
-//! name. Others skip it.
+//! What is our own, and skipped by others: a node may carry `Names`, the names of its event as a JSON list, when its id
+//! is not its only name, and `Internal`, those of them that no user chose; the graph may carry `Requirements`, when its
+//! edges alone would be read as other requirements (see `exact`).
 
+mod exact;
 mod scan;
 mod write;
 
@@ -100,15 +102,14 @@ impl Reader<'_> {
                 continue;
             }
             let own = self.names(node, id);
-            for name in &own {
-                if !names.insert(normal_name(name)) {
+            for Name { text, .. } in &own {
+                if !names.insert(normal_name(text)) {
                     let message =
-                        format!("node `{id}`: the name `{name}` is used already (case does not count)");
+                        format!("node `{id}`: the name `{text}` is used already (case does not count)");
                     self.problem(node.offset, message);
                 }
             }
-            events
-                .push(Event { names: own.into_iter().map(|text| Name { text, internal: false }).collect() });
+            events.push(Event { names: own });
         }
         let mut edge_ids = BTreeSet::new();
         let mut edges = Vec::new();
@@ -127,6 +128,7 @@ impl Reader<'_> {
                 intervals.add(edge.from, edge.to, weight, self.tag(edge.element));
             }
         }
+        self.restore(document, &ids, &mut intervals);
         let links = self.links(&edges, &ids);
         let origin = ids.get("Z").copied();
         if origin.is_none() {
@@ -164,17 +166,47 @@ impl Reader<'_> {
         element.offset..element.offset + rest.find('>').map_or(rest.len(), |at| at + 1)
     }
 
-    /// The names of a node: its `Names`, else its id.
-    fn names(&mut self, node: &Element, id: &str) -> Vec<String> {
+    /// Takes the requirements from the file's own list of them, if its edges still say the same.
+    fn restore(&mut self, document: &Document, ids: &BTreeMap<&str, EventId>, joined: &mut Intervals) {
+        let Some(data) = document.graph_data.iter().find(|data| data.key == exact::KEY) else { return };
+        if data.text.trim().is_empty() {
+            return;
+        }
+        let listed = match exact::requirements(data.text.trim(), ids) {
+            Ok(Some(listed)) if exact::tightest(&listed) == exact::tightest(&joined.requirements) => listed,
+            Ok(_) => return,
+            Err(message) => return self.problem(data.offset, message),
+        };
+        let mut said: BTreeMap<(EventId, EventId), Range<usize>> = BTreeMap::new();
+        for (requirement, [upper, lower]) in joined.requirements.iter().zip(&joined.places) {
+            for (ends, _) in exact::edges_of(requirement) {
+                let place = if ends == (requirement.from, requirement.to) { upper } else { lower };
+                said.entry(ends).or_insert_with(|| place.clone());
+            }
+        }
+        let place = |from, to| said.get(&(from, to)).or_else(|| said.get(&(to, from))).cloned();
+        let start = data.offset..data.offset;
+        let places = listed.iter().map(|requirement| {
+            let (from, to) = (requirement.from, requirement.to);
+            [place(from, to), place(to, from)].map(|place| place.unwrap_or(start.clone()))
+        });
+        joined.places = places.collect();
+        joined.requirements = listed;
+    }
+
+    /// The names of a node: its `Names`, else its id. Those of its `Internal` are internal.
+    fn names(&mut self, node: &Element, id: &str) -> Vec<Name> {
         let mut own = vec![id.to_string()];
+        let mut internal: Option<(&Data, Vec<String>)> = None;
         for data in &node.data {
             match data.key.as_str() {
-                "Names" if !data.text.trim().is_empty() => {
+                key @ ("Names" | "Internal") if !data.text.trim().is_empty() => {
                     match serde_json::from_str::<Vec<String>>(data.text.trim()) {
+                        Ok(names) if key == "Internal" => internal = Some((data, names)),
                         Ok(names) if !names.is_empty() => own = names,
                         _ => {
                             let message = format!(
-                                "node `{id}`: `Names` must be a JSON list of names, like [\"a\", \"b\"]"
+                                "node `{id}`: `{key}` must be a JSON list of names, like [\"a\", \"b\"]"
                             );
                             self.problem(data.offset, message);
                         }
@@ -191,7 +223,15 @@ impl Reader<'_> {
                 _ => {}
             }
         }
-        own
+        let (own_set, mut marked) = (own.iter().cloned().collect::<BTreeSet<_>>(), BTreeSet::new());
+        if let Some((data, names)) = internal {
+            if let Some(other) = names.iter().find(|name| !own_set.contains(*name)) {
+                let message = format!("node `{id}`: `Internal` has `{other}`, which is none of its names");
+                self.problem(data.offset, message);
+            }
+            marked.extend(names);
+        }
+        own.into_iter().map(|text| Name { internal: marked.contains(&text), text }).collect()
     }
 
     fn edge<'d>(

@@ -32,8 +32,9 @@ pub(super) struct Element {
 }
 
 /// The data of nodes and edges that can matter.
-const KEYS: [&str; 9] = [
+const KEYS: [&str; 10] = [
     "Names",
+    "Internal",
     "Obs",
     "Label",
     "Type",

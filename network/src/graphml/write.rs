@@ -5,12 +5,12 @@ use std::fmt::{self, Write};
 
 use quick_xml::escape::escape;
 
+use super::exact;
 use crate::model::{Delay, EventId, Network};
+use crate::plain::Intervals;
 use crate::time::Duration;
 
-/// Writes a network without delays. It reads back equal, except that several requirements between the same two events
-/// become one, that one with only a lower bound is turned round, that one without any bound is left out, and that links
-/// between events that also have a requirement may change places. Every name counts as a user's.
+/// Writes a network without delays. It reads back equal.
 ///
 /// # Errors
 /// Everything about the network that the format cannot say.
@@ -109,7 +109,9 @@ impl<'a> Writer<'a> {
             ("nEdges", "graph", "0"),
             ("nVertices", "graph", "0"),
             ("Name", "graph", ""),
+            (exact::KEY, "graph", ""),
             ("Names", "node", ""),
+            ("Internal", "node", ""),
             ("Type", "edge", "requirement"),
             ("Value", "edge", ""),
             ("LabeledValue", "edge", ""),
@@ -126,11 +128,22 @@ impl<'a> Writer<'a> {
         line(&mut out, format_args!("{}", datum("nEdges", &order.len().to_string())));
         line(&mut out, format_args!("{}", datum("nVertices", &network.events().len().to_string())));
         line(&mut out, format_args!("{}", datum("Name", network.name())));
+        if !says_all(network, &order, &edges) {
+            let rows = exact::rows(network.requirements(), &self.ids);
+            line(&mut out, format_args!("{}", datum(exact::KEY, &rows)));
+        }
         for (event, id) in network.events().iter().zip(&self.ids) {
             let names: Vec<&str> = event.names.iter().map(|name| name.text.as_str()).collect();
-            let names =
-                if names == [id.as_str()] { String::new() } else { datum("Names", &json_list(&names)) };
-            line(&mut out, format_args!("<node id=\"{}\">{names}</node>", attribute(id)));
+            let internal: Vec<&str> =
+                event.names.iter().filter(|name| name.internal).map(|name| name.text.as_str()).collect();
+            let mut data = String::new();
+            if names != [id.as_str()] {
+                data.push_str(&datum("Names", &json_text(&names)));
+            }
+            if !internal.is_empty() {
+                data.push_str(&datum("Internal", &json_text(&internal)));
+            }
+            line(&mut out, format_args!("<node id=\"{}\">{data}</node>", attribute(id)));
         }
         for pair in order {
             let edge = &edges[&pair];
@@ -168,20 +181,8 @@ impl<'a> Writer<'a> {
                 EdgeText::default()
             }));
         };
-        let bound = |weight: Duration| {
-            move |edge: &mut EdgeText| {
-                edge.weight = Some(edge.weight.map_or(weight, |known| known.min(weight)));
-            }
-        };
+        // The links come first: each pair stands where its link does, whatever else is between its events.
         let negative = |duration: Duration| Duration::from_micros(-duration.as_micros());
-        for requirement in self.network.requirements() {
-            if let Some(upper) = requirement.upper.finite() {
-                edge(requirement.from, requirement.to, &bound(upper));
-            }
-            if let Some(lower) = requirement.lower.finite() {
-                edge(requirement.to, requirement.from, &bound(negative(lower)));
-            }
-        }
         for link in self.network.contingents() {
             let end = &self.ids[link.to.index()];
             let lower = format!("LC({end}):{}", link.lower);
@@ -189,8 +190,24 @@ impl<'a> Writer<'a> {
             edge(link.from, link.to, &|edge| edge.label = Some(lower.clone()));
             edge(link.to, link.from, &|edge| edge.label = Some(upper.clone()));
         }
+        for ((from, to), weight) in self.network.requirements().iter().flat_map(exact::edges_of) {
+            edge(from, to, &|edge| {
+                edge.weight = Some(edge.weight.map_or(weight, |known| known.min(weight)));
+            });
+        }
         (order, edges)
     }
+}
+
+/// True if the edges alone are read as the requirements they come from.
+fn says_all(network: &Network, order: &[Ends], edges: &BTreeMap<Ends, EdgeText>) -> bool {
+    let mut read = Intervals::default();
+    for &(from, to) in order {
+        if let Some(weight) = edges[&(from, to)].weight {
+            read.add(from, to, weight, 0..0);
+        }
+    }
+    read.requirements == network.requirements()
 }
 
 fn line(out: &mut String, text: fmt::Arguments<'_>) {
@@ -205,9 +222,9 @@ fn attribute(text: &str) -> String {
     escape(text).replace('\t', "&#9;").replace('\n', "&#10;").replace('\r', "&#13;")
 }
 
-/// A JSON list in which every character is one that XML allows.
-fn json_list(names: &[&str]) -> String {
-    let json = serde_json::to_string(names).unwrap_or_default();
+/// JSON in which every character is one that XML allows.
+pub(super) fn json_text(value: &impl serde::Serialize) -> String {
+    let json = serde_json::to_string(value).unwrap_or_default();
     json.chars()
         .map(|char| if is_xml(char) { char.to_string() } else { format!("\\u{:04x}", char as u32) })
         .collect()

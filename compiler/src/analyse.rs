@@ -224,7 +224,7 @@ fn entry(program: &ast::Program, names: &Names, options: &Options, problems: &mu
             (None, _) => format!(
                 "Define `{}`, or start from another program with `--entry NAME`: {}.",
                 clip(&wanted),
-                clip(&candidates.join(", "))
+                some_of(&candidates)
             ),
         };
         problems.push(
@@ -242,6 +242,20 @@ fn entry(program: &ast::Program, names: &Names, options: &Options, problems: &mu
         );
     }
     found
+}
+
+/// The first names, as many as a line has room for.
+fn some_of(names: &[&str]) -> String {
+    let mut shown = String::new();
+    for (index, name) in names.iter().enumerate() {
+        let name = clip(name);
+        if index > 0 && shown.chars().count() + name.chars().count() > 60 {
+            return format!("{shown} and {} more", names.len() - index);
+        }
+        shown.push_str(if index > 0 { ", " } else { "" });
+        shown.push_str(&name);
+    }
+    shown
 }
 
 fn not_chosen(program: &ast::Program, defined: &[&str]) -> Diagnostic {

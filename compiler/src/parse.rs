@@ -14,7 +14,7 @@ mod package;
 pub(crate) use body::OPERATORS;
 pub(crate) use elsewhere::instead_of_operator;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::ast::{ControlProgram, Ident, NamedNumber, Program};
 use crate::code::Code;
@@ -33,17 +33,18 @@ pub const DEFAULT_PACKAGE: &str = "cl-user";
 pub fn parse(forms: &[Form], program: &mut Program, problems: &mut Problems) {
     reserved_names(forms, problems);
     let mut home = DEFAULT_PACKAGE.to_string();
+    let defined = defined(forms, program);
     for form in forms {
         let Some((word, rest)) = form.call() else {
             if !form.is_error() {
-                unknown_top_level(form, problems);
+                unknown_top_level(form, &defined, problems);
             }
             problems.lose(form);
             continue;
         };
         let mut word = word;
         if !DEFINITIONS.contains(&word) {
-            unknown_top_level(form, problems);
+            unknown_top_level(form, &defined, problems);
             problems.lose(form);
             // A slip in the operator says enough to go on with what was meant.
             match nearest(word, DEFINITIONS).filter(|_| !rest.is_empty()) {
@@ -53,7 +54,9 @@ pub fn parse(forms: &[Form], program: &mut Program, problems: &mut Problems) {
         }
         let before = problems.errors();
         match word {
-            "define-control-program" => program.programs.extend(control_program(form, rest, &home, problems)),
+            "define-control-program" => {
+                program.programs.extend(control_program(form, rest, &home, &defined, problems));
+            }
             "defclass" => program.classes.extend(class::class(form, rest, &home, problems)),
             "defparameter" | "defconstant" => {
                 program.parameters.extend(named_number(form, rest, &home, problems));
@@ -73,10 +76,20 @@ pub fn parse(forms: &[Form], program: &mut Program, problems: &mut Problems) {
     }
 }
 
+/// The names of the programs of earlier sources and of this one: where no definition fits, they are calls.
+fn defined(forms: &[Form], program: &Program) -> BTreeSet<String> {
+    let here = forms.iter().filter_map(|form| match form.call() {
+        Some(("define-control-program", [name, ..])) => name.word().map(str::to_string),
+        _ => None,
+    });
+    program.programs.iter().map(|program| program.name.name.clone()).chain(here).collect()
+}
+
 fn control_program(
     form: &Form,
     rest: &[Form],
     home: &str,
+    defined: &BTreeSet<String>,
     problems: &mut Problems,
 ) -> Option<ControlProgram> {
     const SHAPE: &str = "A program is `(define-control-program name (parameter...) (declare ...) body...)`.";
@@ -131,14 +144,14 @@ fn control_program(
         damaged: problems.is_damaged(form.span),
     };
     // `(define-control-program (drive site) ...)`: the parameters are with the name.
-    let listed = rest.first().and_then(Form::list).is_some_and(|items| !is_body(&rest[1..], items));
+    let listed = rest.first().and_then(Form::list).is_some_and(|items| !is_body(&rest[1..], items, defined));
     let inside = heading.map(|items| &items[1..]).filter(|inside| !inside.is_empty() || !listed);
     let rest = match (inside, rest.split_first()) {
         (Some(inside), _) => {
             program.parameters = parameters(inside, problems);
             rest
         }
-        (_, Some((Form { kind: FormKind::List(items), .. }, rest))) if !is_body(rest, items) => {
+        (_, Some((Form { kind: FormKind::List(items), .. }, rest))) if !is_body(rest, items, defined) => {
             program.parameters = parameters(items, problems);
             rest
         }
@@ -252,12 +265,13 @@ fn is_declaration(item: &Form, problems: &mut Problems) -> bool {
 }
 
 /// True if a list where the parameters belong is a declaration or a body form: the parameter list was forgotten.
-fn is_body(rest: &[Form], items: &[Form]) -> bool {
+fn is_body(rest: &[Form], items: &[Form], defined: &BTreeSet<String>) -> bool {
     let word = items.first().and_then(Form::word);
     match word {
         Some("declare") => true,
         Some(word) => {
-            rest.is_empty() && (OPERATORS.contains(&word) || items.iter().any(|item| item.list().is_some()))
+            let is_form = OPERATORS.contains(&word) || defined.contains(word);
+            rest.is_empty() && (is_form || items.iter().any(|item| item.list().is_some()))
         }
         None => false,
     }
@@ -326,13 +340,13 @@ fn named_number(form: &Form, rest: &[Form], home: &str, problems: &mut Problems)
     }
 }
 
-fn unknown_top_level(form: &Form, problems: &mut Problems) {
+fn unknown_top_level(form: &Form, defined: &BTreeSet<String>, problems: &mut Problems) {
     // Of a name with a package, such as `asdf:defsystem`, only the name counts.
     let symbol = form.list().and_then(|items| items.first()).and_then(Form::symbol);
     let word = symbol.map_or("", |symbol| symbol.name.as_str());
-    let (message, help) = if OPERATORS.contains(&word) {
+    let (message, help) = if OPERATORS.contains(&word) || defined.contains(word) {
         (
-            format!("`{word}` stands outside of every program"),
+            format!("`{}` stands outside of every program", clip(word)),
             Some(
                 "It belongs into the body of a `define-control-program`: is there a `)` too many before it?"
                     .to_string(),

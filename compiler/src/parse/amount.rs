@@ -122,7 +122,7 @@ fn list(form: &Form, what: &str, problems: &mut Problems) -> AmountKind {
             problems.push(
                 Diagnostic::error(Code::UnknownUnit, form.span, message)
                     .primary(format!("{what} was expected"))
-                    .help("The units are `(seconds 90)`, `(minutes 5)`, `(hours 1.5)` and `(days 1)`; arithmetic is `+`, `-`, `*`, `/`, `1+`, `1-`, `min`, `max` and `mod`.")
+                    .help("The units are `(microseconds 250)`, `(seconds 90)`, `(minutes 5)`, `(hours 1.5)` and `(days 1)`; arithmetic is `+`, `-`, `*`, `/`, `1+`, `1-`, `min`, `max` and `mod`.")
                     .maybe_help(match word {
                         "mins" | "m" => Some("Did you mean `minutes`?".to_string()),
                         _ => did_you_mean(word, near),

@@ -57,7 +57,7 @@ pub(super) fn options<'a, const N: usize>(
                 .primary("not understood here")
                 .help(match meant.is_empty() {
                     false => format!("Did you mean {}?", meant.join(" or ")),
-                    true => format!("`{owner}` understands {}.", list(&known)),
+                    true => format!("`{owner}` understands {}.", list(&known, owner)),
                 }),
             );
             continue;
@@ -130,7 +130,8 @@ fn meant(word: &str, known: &[&str]) -> Vec<usize> {
         "min" | "minimum" | "least" | "shortest" => Some("lower-bound"),
         _ => None,
     };
-    match near.or(synonym) {
+    // `:min` begins like the name of a delay, and still is a bound.
+    match synonym.filter(|bound| known.contains(bound)).or(near) {
         Some(near) if known.contains(&near) => slots(&|name| name == near),
         _ => longer,
     }
@@ -147,7 +148,7 @@ fn no_keyword(form: &Form, last: Option<&Form>, forms: &[Form], known: &[&str], 
     let problem = unexpected(
         form,
         &format!("a keyword of `{owner}`"),
-        &format!("`{owner}` understands {}.", list(known)),
+        &format!("`{owner}` understands {}.", list(known, owner)),
     );
     let numbers: Vec<String> = forms
         .iter()
@@ -159,6 +160,13 @@ fn no_keyword(form: &Form, last: Option<&Form>, forms: &[Form], known: &[&str], 
         }
         _ if form.call().is_some_and(|_| !is_calculation(form)) && last.is_some() => {
             Some("Is a `)` missing before it?".to_string())
+        }
+        (Some(FormKind::Number(_)), _, _) if matches!(form.kind, FormKind::Number(_)) => {
+            let given = |bound: &&str| forms.iter().any(|form| form.keyword() == Some(*bound));
+            let missing = ["lower-bound", "upper-bound"].into_iter().find(|bound| !given(bound));
+            missing
+                .filter(|bound| known.contains(bound))
+                .map(|bound| format!("`:{bound}` is missing before it: `:{bound} {}`.", super::text_of(form)))
         }
         (None, _, [both]) if known.contains(&"upper-bound") => {
             Some(format!("Every bound has its keyword: `({owner} :lower-bound {both} :upper-bound {both})`."))
@@ -176,7 +184,9 @@ fn example(word: &str) -> &'static str {
     if matches!(word, "contingent" | "slack") { "t" } else { "5" }
 }
 
-fn list(known: &[&str]) -> String {
-    let words: Vec<String> = known.iter().map(|word| format!(":{word}")).collect();
+/// The keywords to write. `simple` knows `:contingent` only to say that it belongs to `duration`.
+fn list(known: &[&str], owner: &str) -> String {
+    let wanted = known.iter().filter(|word| owner != "simple" || **word != "contingent");
+    let words: Vec<String> = wanted.map(|word| format!(":{word}")).collect();
     super::one_of(&words.iter().map(String::as_str).collect::<Vec<_>>())
 }

@@ -78,7 +78,7 @@ pub(crate) fn run(arguments: &Run, common: &Common) -> io::Result<Status> {
             Nature::Random => Temper::Random,
         },
         seed: arguments.seed,
-        observations: given.by_event.iter().map(|&(event, time, _)| (event, time)).collect(),
+        observations: given.by_event.iter().map(|heard| (heard.event, heard.time)).collect(),
         internal: arguments.internal,
     };
     let execution = match simulate(&plan, &input.program(&arguments.selection), &simulation) {
@@ -120,8 +120,16 @@ fn not_executed(conflict: &Conflict, program: &str) -> Execution {
 /// The observations given, and what is wrong with them. Each option is a source of its own to point into.
 struct Observations {
     sources: Vec<Source>,
-    by_event: Vec<(EventId, Time, Span)>,
+    by_event: Vec<Heard>,
     diagnostics: Vec<Diagnostic>,
+}
+
+/// One observation: the event by the name it was given, and where that stands.
+struct Heard {
+    event: EventId,
+    name: String,
+    time: Time,
+    span: Span,
 }
 
 /// Observation files are small.
@@ -219,22 +227,25 @@ impl Observations {
                 format!("`{name}` cannot be heard before the mission starts"),
                 "times are seconds after the start".to_string(),
             )),
-            // Another name of a merged event may say the same again.
-            Some(event)
-                if self
-                    .by_event
-                    .iter()
-                    .any(|(other, at, _)| *other == event && at.as_micros() == time.as_micros()) =>
-            {
-                None
-            }
-            Some(event) if self.by_event.iter().any(|(other, ..)| *other == event) => {
-                Some((format!("`{name}` is observed twice"), "news of an event arrives once".to_string()))
-            }
-            Some(event) => {
-                self.by_event.push((event, Time::from_micros(time.as_micros()), span));
-                None
-            }
+            Some(event) => match self.by_event.iter().find(|heard| heard.event == event) {
+                // Another name of a merged event may say the same again.
+                Some(known) if known.time.as_micros() == time.as_micros() => None,
+                Some(known) => Some((
+                    format!("`{name}` is observed twice"),
+                    match known.name.eq_ignore_ascii_case(name) {
+                        true => "news of an event arrives once".to_string(),
+                        false => format!(
+                            "`{}` and `{name}` are names of one event, and news of an event arrives once",
+                            known.name
+                        ),
+                    },
+                )),
+                None => {
+                    let time = Time::from_micros(time.as_micros());
+                    self.by_event.push(Heard { event, name: name.to_string(), time, span });
+                    None
+                }
+            },
         };
         if let Some((message, help)) = problem {
             self.diagnostics.push(Diagnostic::error(Code::BadObservation, span, message).help(help));
@@ -244,8 +255,11 @@ impl Observations {
     fn impossible(&self, impossible: &Impossible, network: &Network) -> Diagnostic {
         let Impossible { event, time, earliest, latest } = impossible;
         let name = network.label(*event);
-        let span =
-            self.by_event.iter().find(|(other, ..)| other == event).map_or(Span::default(), |found| found.2);
+        let span = self
+            .by_event
+            .iter()
+            .find(|heard| heard.event == *event)
+            .map_or(Span::default(), |heard| heard.span);
         let message = match latest {
             _ if time < earliest => {
                 format!("news of `{name}` at {time} s is too early: it cannot arrive before {earliest} s")

@@ -221,6 +221,27 @@ fn a_compiled_network_is_input_again() {
 }
 
 #[test]
+fn a_reduced_network_is_the_same_as_graphml_and_as_json() {
+    let folder = tempfile::tempdir().unwrap();
+    let stnu = folder.path().join("robot.stnu");
+    let stnu = stnu.to_str().unwrap();
+    let reduced = ["compile", "examples/rmpl/robot.rmpl", "--emit", "reduced", "--quiet", "--format"];
+    assert_eq!(kirk(&[&reduced[..], &["graphml", "-o", stnu]].concat()).status.code(), Some(0));
+    let as_json = stdout(&kirk(&[&reduced[..], &["json"]].concat()));
+    assert_eq!(stdout(&kirk(&["compile", stnu, "--format", "json"])), as_json);
+}
+
+#[test]
+fn two_names_of_one_event_are_observed_once() {
+    let run = ["run", "examples/rmpl/robot.rmpl", "--simulate", "--observe", "human-downlink-science:end@20"];
+    let again = |observation| [&run[..], &["--observe", observation]].concat();
+    let words = "`human-downlink-science:end` and `sync:start` are names of one event";
+    is_refused(&again("sync:start@22"), b"", words);
+    is_refused(&again("human-downlink-science:end@22"), b"", "is observed twice");
+    assert_eq!(kirk(&again("sync:start@20")).status.code(), Some(0));
+}
+
+#[test]
 fn networks_of_other_tools_are_input_too() {
     let stnu = "tests/networks/lane50_dc_000.stnu";
     for file in [stnu, "tests/networks/lane50_dc_000.plainstnu"] {

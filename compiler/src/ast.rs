@@ -150,6 +150,9 @@ pub struct DurationOf {
     pub bounds: Bounds,
     /// True if Nature decides.
     pub contingent: bool,
+    /// The `nil` of `:contingent nil`.
+    #[serde(skip)]
+    pub contingent_nil: Option<Span>,
     /// How early and late the news of the end may be, if anything is said about it.
     pub delay: Option<Bounds>,
     /// The declaration.

@@ -38,6 +38,18 @@ impl Analyser<'_> {
         let mut delay = Bounds { lower: nothing(span), upper: nothing(span), span };
         if let Some(written) = &duration.delay {
             if !duration.contingent {
+                let (at, label, help) = match duration.contingent_nil {
+                    Some(nil) => (
+                        nil,
+                        "not contingent, as is said here",
+                        "Change `:contingent nil` to `:contingent t`, or take the delay out.",
+                    ),
+                    None => (
+                        duration.span,
+                        "`:contingent t` is missing in this duration",
+                        "Add `:contingent t` after `(simple ...)`, or take the delay out.",
+                    ),
+                };
                 self.problems.push(
                     Diagnostic::error(
                         Code::DelayNotContingent,
@@ -45,8 +57,8 @@ impl Analyser<'_> {
                         format!("the end of `{name}` has an observation delay but is not contingent"),
                     )
                     .primary("only what Nature decides has to be observed")
-                    .label(duration.span, "`:contingent t` is missing in this duration")
-                    .help("Add `:contingent t` after `(simple ...)`, or take the delay out."),
+                    .label(at, label)
+                    .help(help),
                 );
             }
             delay = self.delay(written);

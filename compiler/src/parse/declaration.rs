@@ -133,7 +133,11 @@ pub(super) fn fallen_out(
         problem = problem.label(end, "the duration already ends here");
         let unknown = || Some(Amount { kind: AmountKind::Error, span: keyword.span });
         match meant {
-            "contingent" => duration.contingent = value.is_none_or(|value| value.word() != Some("nil")),
+            "contingent" => {
+                duration.contingent_nil =
+                    value.filter(|value| value.word() == Some("nil")).map(|nil| nil.span);
+                duration.contingent = duration.contingent_nil.is_none();
+            }
             "upper-bound" => duration.bounds.upper = duration.bounds.upper.take().or_else(unknown),
             _ => {}
         }
@@ -228,6 +232,8 @@ fn duration(form: &Form, items: &[Form], problems: &mut Problems) -> Option<Dura
         upper: upper.map(|form| amount(form, "the upper bound", problems)),
         span: simple.span,
     };
-    let contingent = contingent.or(misplaced).is_some_and(|form| flag(form, "contingent", problems));
-    Some(DurationOf { bounds, contingent, delay, span: form.span })
+    let contingent = contingent.or(misplaced);
+    let contingent_nil = contingent.filter(|form| form.word() == Some("nil")).map(|nil| nil.span);
+    let contingent = contingent.is_some_and(|form| flag(form, "contingent", problems));
+    Some(DurationOf { bounds, contingent, contingent_nil, delay, span: form.span })
 }

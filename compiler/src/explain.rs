@@ -85,7 +85,9 @@ fn advice(conflict: &Conflict, network: &Network, origins: &Origins) -> String {
         advice.push("news that comes sooner");
     }
     let advice = match advice.split_last() {
-        Some((last, rest)) if !rest.is_empty() => format!(" It would take {} or {last}{AFTERWARDS}", rest.join(", ")),
+        Some((last, rest)) if !rest.is_empty() => {
+            format!(" It would take {} or {last}{AFTERWARDS}", rest.join(", "))
+        }
         Some((last, _)) => format!(" It would take {last}{AFTERWARDS}"),
         None => String::new(),
     };

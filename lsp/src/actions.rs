@@ -205,9 +205,8 @@ fn missing_at(mission: &Mission, conflict: &Conflict, part: Part, place: Span) -
     let times: i64 =
         conflict.members.iter().filter(|it| is_same(it.part)).map(|it| i64::from(it.times)).sum();
     let missing = conflict.total.as_micros().saturating_neg();
-    (times > 0).then(|| {
-        Duration::from_micros(missing.div_euclid(times) + i64::from(missing.rem_euclid(times) != 0))
-    })
+    (times > 0)
+        .then(|| Duration::from_micros(missing.div_euclid(times) + i64::from(missing.rem_euclid(times) != 0)))
 }
 
 /// The mission after an edit.

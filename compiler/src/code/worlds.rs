@@ -15,7 +15,8 @@ pub(super) const PACKAGE_NOT_CHOSEN: Page = Page {
     meaning:
         "The source defines several packages, and none of them, or more than one, has a program of the name to
 start from. Say which one is meant with
-`-P NAME`. With one package or none, `-P` is not needed.",
+`-P NAME`. What is outside any package is in `cl-user`, which counts as one of them. With one package or none, `-P`
+is not needed.",
     wrong: r##"(defpackage #:astronaut)
 (defpackage #:robot)"##,
     right: r##"(defpackage #:robot)

@@ -164,7 +164,7 @@ impl Index<'_> {
             .primary("looked for in the whole mission");
         let of_it = |named: &&Named| wanted.program.map(Target::Program).as_ref() == Some(&named.target);
         let mut all = self.scopes.named.iter().filter(of_it);
-        Err(match (all.next(), all.last()) {
+        Err(match (all.next(), all.next_back()) {
             (None, _) => problem.help("It is defined, but nothing that the mission does leads to it."),
             (Some(only), None) => problem.help(format!("There is `{}` alone.", only.episode)),
             (Some(first), Some(last)) => {

@@ -16,7 +16,7 @@ pub(crate) fn diagnostic(conflict: &Conflict, network: &Network, input: &Input) 
         None => {
             let missing = kirk_network::Duration::from_micros(-conflict.total.as_micros());
             let message = format!(
-                "`{}` cannot be executed in every case: in the worst case {missing} s are missing",
+                "`{}` cannot be executed in every case: {missing} s are missing between these bounds",
                 network.name()
             );
             let place = |part: Part| {

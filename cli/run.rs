@@ -108,7 +108,7 @@ fn not_executed(conflict: &Conflict, program: &str) -> Execution {
             time: Seconds(Duration::ZERO),
             reason: "not-controllable".to_string(),
             detail: format!(
-                "there is no strategy that works in every case: in the worst case {missing} s are missing"
+                "there is no strategy that works in every case: {missing} s are missing between bounds that do not go together"
             ),
         }),
         makespan: Seconds(Duration::ZERO),

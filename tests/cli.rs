@@ -300,7 +300,11 @@ fn the_same_mission_can_be_checked_under_other_delays() {
         assert_eq!(sum < 0.0, status == Some(1), "{delays}");
     }
     let never = kirk(&["check", file, "--delays", "never"]);
-    assert!(stderr(&never).contains("1 s are missing if no news ever comes"), "{}", stderr(&never));
+    assert!(
+        stderr(&never).contains("1 s are missing between these bounds if no news ever comes"),
+        "{}",
+        stderr(&never)
+    );
     is_refused(&["check", file, "--delays", "soon"], b"", "as-written");
 }
 

@@ -184,24 +184,25 @@ fn entry(program: &ast::Program, names: &Names, options: &Options, problems: &mu
             }
             vec![text]
         }
-        None if defined.len() > 1 => {
+        None => match holders(program, &wanted).as_slice() {
             // If just one of them has the program, that is the one.
-            let has = |home: &str| program.programs.iter().any(|p| p.home == home && p.name.name == wanted);
-            match defined.iter().filter(|home| has(home)).collect::<Vec<_>>().as_slice() {
-                [only] => vec![only.to_string()],
-                _ => {
-                    problems.push(not_chosen(program, &defined));
-                    return None;
-                }
+            [only] if defined.len() > 1 => vec![only.home.clone()],
+            [first, second, ..] => {
+                problems.push(several(program, first, second));
+                return None;
             }
-        }
-        None => {
+            _ if defined.len() > 1 => {
+                problems.push(not_chosen(program, &defined));
+                return None;
+            }
             // One package or none, whether declared or only entered.
-            let mut homes: Vec<String> = defined.iter().map(ToString::to_string).collect();
-            homes.push(DEFAULT_PACKAGE.to_string());
-            homes.extend(program.programs.iter().map(|p| p.home.clone()));
-            homes
-        }
+            _ => {
+                let mut homes: Vec<String> = defined.iter().map(ToString::to_string).collect();
+                homes.push(DEFAULT_PACKAGE.to_string());
+                homes.extend(program.programs.iter().map(|p| p.home.clone()));
+                homes
+            }
+        },
     };
     let plain = |home: &String| {
         let ident = Ident { package: None, name: wanted.clone(), span: start };
@@ -256,6 +257,35 @@ fn some_of(names: &[&str]) -> String {
         shown.push_str(&name);
     }
     shown
+}
+
+/// The programs of a name, the first in each package.
+fn holders<'a>(program: &'a ast::Program, wanted: &str) -> Vec<&'a ast::ControlProgram> {
+    let mut seen = BTreeSet::new();
+    let named = program.programs.iter().filter(|p| p.name.name == wanted);
+    named.filter(|p| seen.insert(&p.home)).collect()
+}
+
+/// Programs to start from in several packages, of which what is outside any package counts as one.
+fn several(program: &ast::Program, first: &ast::ControlProgram, second: &ast::ControlProgram) -> Diagnostic {
+    let name = &first.name.name;
+    let homes: Vec<String> = holders(program, name).iter().map(|p| format!("`{}`", clip(&p.home))).collect();
+    let outside = [first, second].iter().any(|p| p.home == DEFAULT_PACKAGE);
+    let help = match outside {
+        true => format!(
+            "Choose the package with `-P`: {}. What is in no package is in `{DEFAULT_PACKAGE}`.",
+            homes.join(", ")
+        ),
+        false => format!("Choose the package with `-P`: {}.", homes.join(", ")),
+    };
+    Diagnostic::error(
+        Code::PackageNotChosen,
+        second.name.span,
+        format!("several packages have a program `{}` to start from, and none is chosen", clip(name)),
+    )
+    .primary("the second one")
+    .label(first.name.span, "the first one")
+    .help(help)
 }
 
 fn not_chosen(program: &ast::Program, defined: &[&str]) -> Diagnostic {

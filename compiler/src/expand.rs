@@ -106,19 +106,22 @@ impl<'a> Expander<'a> {
         episode.requires = program.requires.as_ref().map(|c| Box::new(substitute(c, program, &arguments)));
         episode.effect = program.effect.as_ref().map(|c| Box::new(substitute(c, program, &arguments)));
         episode.arguments = arguments.iter().map(|value| value.kind.clone()).collect();
-        if let Some(scope) = outside {
-            let target = Target::Program(index);
-            let arguments = episode.arguments.clone();
-            let named = Named { scope, target, arguments, episode: episode.name.clone(), span };
-            self.scopes.add(named, self.problems);
-        }
-        let scope = self.scopes.open(outside);
+        // The program started from occurs too, outside of everything.
+        let around = outside.unwrap_or_else(|| self.scopes.open(None));
+        let target = Target::Program(index);
+        let given = episode.arguments.clone();
+        let named = Named { scope: around, target, arguments: given, episode: episode.name.clone(), span };
+        self.scopes.add(named, self.problems);
+        let scope = self.scopes.open(Some(around));
         let mut place = Place { name: &name, program, call: span, internal: 0, scope, variables: arguments };
         match &program.work {
             Work::Primitive(timing) => self.primitive(&mut episode, timing, &place),
             Work::Body(body) => episode.parts = self.parts(body, &mut place),
         }
         self.scopes.close(scope);
+        if outside.is_none() {
+            self.scopes.close(around);
+        }
         episode
     }
 

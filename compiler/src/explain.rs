@@ -12,6 +12,9 @@ const PARALLEL: &str = "this `parallel`";
 /// What the joins of a `parallel` come to where Nature has no say.
 const JOINED: &str = "joined here: without slack, all parts start together and end together";
 
+/// What is found is one conflict, not all of them.
+const AFTERWARDS: &str = "; another conflict may show then.";
+
 /// Words a conflict. Its indices are those of `network`, which is the network of the plan, not merged.
 pub fn explain_conflict(
     conflict: &Conflict,
@@ -22,7 +25,7 @@ pub fn explain_conflict(
     let missing = Duration::from_micros(conflict.total.as_micros().saturating_neg());
     let name = network.name();
     let message =
-        format!("`{name}` cannot be executed in every case: in the worst case {missing} s are missing");
+        format!("`{name}` cannot be executed in every case: {missing} s are missing between these bounds");
     let mut problem = Diagnostic::error(Code::NotControllable, program, message)
         .primary("there is no way to execute this that works whatever happens");
     let mut places: Vec<(Span, Vec<String>)> = Vec::new();
@@ -82,8 +85,10 @@ fn advice(conflict: &Conflict, network: &Network, origins: &Origins) -> String {
         advice.push("news that comes sooner");
     }
     let advice = match advice.split_last() {
-        Some((last, rest)) if !rest.is_empty() => format!(" It would take {} or {last}.", rest.join(", ")),
-        Some((last, _)) => format!(" It would take {last}."),
+        Some((last, rest)) if !rest.is_empty() => {
+            format!(" It would take {} or {last}{AFTERWARDS}", rest.join(", "))
+        }
+        Some((last, _)) => format!(" It would take {last}{AFTERWARDS}"),
         None => String::new(),
     };
     text.push_str(&advice);

@@ -197,6 +197,8 @@ pub struct EventOf {
     pub name: Ident,
     /// The program of this name, if there is one.
     pub program: Option<usize>,
+    /// True if the name is that of one occurrence of the program: `a#2`.
+    pub is_occurrence: bool,
     /// The arguments, if any are written.
     pub arguments: Option<Vec<Expression>>,
     /// The form.

@@ -78,7 +78,7 @@ fn label_names_are_names_of_events() {
     let text = "(define-control-program a () (declare (primitive)))
 (define-control-program main ()
   (sequence (:slack t) (label first (a)) (dotimes (i 2) (label (next i) (a))) (label A (a)) (label twice (a)))
-  (label twice#2 (a)) (dotimes (i 1) (label twice (a))))";
+  (dotimes (i 1) (label twice (a))))";
     let network = common::compile(text).plan.expect("a plan").network;
     let find = |name| network.find(name).map(|event| network.id(event).to_string());
     assert_eq!(find("first:start").as_deref(), Some("a:start"));
@@ -86,5 +86,22 @@ fn label_names_are_names_of_events() {
     assert_eq!(find("next/1:end").as_deref(), Some("a#3:end"));
     assert_eq!(find("a:start").as_deref(), Some("a:start"), "the occurrence has the name, not the label");
     assert_eq!(find("twice:start"), None, "two are called that");
-    assert_eq!(find("twice#2:start").as_deref(), Some("a#6:start"));
+}
+
+#[test]
+fn between_takes_the_program_started_from_and_numbered_occurrences() {
+    let text = "(define-control-program a () (declare (primitive)))
+(define-control-program main ()
+  (sequence (:slack t) (a) (a) (a))
+  (between (start main) (end main) (simple-temporal :upper-bound 30))
+  (between (end a#2) (start a#3) (simple-temporal :lower-bound 5)))";
+    let network = common::compile(text).plan.expect("a plan").network;
+    let bounds = |from: &str, to: &str| {
+        let (from, to) = (network.find(from).expect("an event"), network.find(to).expect("an event"));
+        let between = network.requirements().iter().filter(|it| (it.from, it.to) == (from, to));
+        between.map(|it| (it.lower.finite(), it.upper.finite())).collect::<Vec<_>>()
+    };
+    let seconds = |seconds| Some(kirk_network::Duration::from_secs(seconds));
+    assert!(bounds("main:start", "main:end").contains(&(seconds(0), seconds(30))));
+    assert!(bounds("a#2:end", "a#3:start").contains(&(seconds(5), None)));
 }

@@ -134,56 +134,86 @@ fn swap(analysis: &Analysis, diagnostic: &Diagnostic) -> Option<Fix> {
         .then(|| ("Swap the bounds".to_string(), vec![(a, text(b)), (b, text(a))]))
 }
 
-/// What would settle a conflict: for each bound of ours in it as much more as is missing, and slack where ends have to meet.
+/// What settles a conflict: more in one bound of ours, and slack where ends have to meet. Each is tried before it is offered,
+/// as the conflict may be one of several.
 fn settle(analysis: &Analysis, mission: &Mission, conflict: &Conflict) -> Vec<Fix> {
-    let (network, origins) = (&mission.plan.network, &mission.plan.origins);
-    let missing = conflict.total.as_micros().saturating_neg();
+    const LARGE: usize = 2_000;
     let mut fixes: Vec<Fix> = Vec::new();
+    // Of large missions nothing is tried, as that takes as long as the verdict, each time.
+    if mission.occurrences.len() > LARGE {
+        return fixes;
+    }
     for share in &conflict.members {
-        match share.part {
+        let fix = match share.part {
             Part::RequirementUpper(index) | Part::RequirementLower(index) if is_bound(mission, index) => {
-                let origin = &origins.requirements[index];
-                let upper = matches!(share.part, Part::RequirementUpper(_));
-                let times = i64::from(share.times.max(1));
-                let by = Duration::from_micros(
-                    missing.div_euclid(times) + i64::from(missing.rem_euclid(times) != 0),
-                );
-                let place = origin.places[usize::from(upper)];
-                fixes.extend(relax(analysis, place, network, share.part, by));
+                relax_enough(analysis, mission, conflict, share.part)
             }
             Part::RequirementUpper(index) | Part::RequirementLower(index) | Part::Join(index) => {
-                let Some(origin) = origins.requirements.get(index) else { continue };
-                if origin.kind == OriginKind::Join && meets_nature(network, index) {
-                    fixes
-                        .extend(add_slack(analysis, origin.span).filter(|fix| helps(analysis, mission, fix)));
-                }
+                let origin = mission.plan.origins.requirements.get(index);
+                origin
+                    .filter(|origin| {
+                        origin.kind == OriginKind::Join && meets_nature(&mission.plan.network, index)
+                    })
+                    .and_then(|origin| add_slack(analysis, origin.span))
+                    .filter(|fix| {
+                        matches!(
+                            tried(analysis, mission, fix),
+                            Some(Mission { verdict: Judgement::Controllable, .. })
+                        )
+                    })
             }
-            _ => {}
-        }
+            _ => None,
+        };
+        fixes.extend(fix.filter(|fix| !fixes.contains(fix)));
     }
-    let mut unique: Vec<Fix> = Vec::new();
-    for fix in fixes {
-        if !unique.contains(&fix) {
-            unique.push(fix);
-        }
-    }
-    unique
+    fixes
 }
 
-/// True if less is missing after an edit. Of large missions that is not tried, as it takes as long as the verdict.
-fn helps(analysis: &Analysis, mission: &Mission, (_, edits): &Fix) -> bool {
-    const LARGE: usize = 2_000;
-    if mission.occurrences.len() > LARGE {
-        return true;
+/// A bound that asks for so much less that no conflict is left; `None` if that does not come about in a few rounds.
+fn relax_enough(analysis: &Analysis, mission: &Mission, conflict: &Conflict, part: Part) -> Option<Fix> {
+    const ROUNDS: usize = 6;
+    let place = written_at(mission, part)?;
+    let mut by = missing_at(mission, conflict, part, place)?;
+    for _ in 0..ROUNDS {
+        let fix = relax(analysis, place, &mission.plan.network, part, by)?;
+        let after = tried(analysis, mission, &fix)?;
+        match &after.verdict {
+            Judgement::Controllable => return Some(fix),
+            Judgement::Uncontrollable(rest) => by = by.checked_add(missing_at(&after, rest, part, place)?)?,
+            Judgement::TooLarge => return None,
+        }
     }
-    let missing = |mission: &Mission| match &mission.verdict {
-        Judgement::Uncontrollable(conflict) => conflict.total.as_micros().saturating_neg(),
-        _ => 0,
+    None
+}
+
+/// Where the bound of a requirement is written.
+fn written_at(mission: &Mission, part: Part) -> Option<Span> {
+    let (index, side) = match part {
+        Part::RequirementLower(index) => (index, 0),
+        Part::RequirementUpper(index) => (index, 1),
+        _ => return None,
     };
+    Some(mission.plan.origins.requirements.get(index)?.places[side])
+}
+
+/// How much the bound at a place has to change for this conflict, which may use it several times. `None` if it does not.
+fn missing_at(mission: &Mission, conflict: &Conflict, part: Part, place: Span) -> Option<Duration> {
+    let is_same = |other: Part| {
+        std::mem::discriminant(&other) == std::mem::discriminant(&part)
+            && written_at(mission, other).is_some_and(|at| at.start == place.start)
+    };
+    let times: i64 =
+        conflict.members.iter().filter(|it| is_same(it.part)).map(|it| i64::from(it.times)).sum();
+    let missing = conflict.total.as_micros().saturating_neg();
+    (times > 0)
+        .then(|| Duration::from_micros(missing.div_euclid(times) + i64::from(missing.rem_euclid(times) != 0)))
+}
+
+/// The mission after an edit.
+fn tried(analysis: &Analysis, mission: &Mission, (_, edits): &Fix) -> Option<Mission> {
     let (_, unjudged) = analyse(edited(analysis.text(), edits));
     let (after, _) = judge(unjudged);
-    let same = |after: &&Mission| after.program == mission.program;
-    after.iter().filter(same).any(|after| missing(after) < missing(mission))
+    after.into_iter().find(|after| after.program == mission.program)
 }
 
 /// True if the requirement is a number that somebody wrote for one bound alone.

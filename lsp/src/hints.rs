@@ -99,7 +99,7 @@ fn verdict(mission: &Mission) -> String {
     match &mission.verdict {
         Judgement::Uncontrollable(conflict) => {
             let missing = Duration::from_micros(conflict.total.as_micros().saturating_neg());
-            format!("not controllable: in the worst case {missing} s are missing")
+            format!("not controllable: {missing} s are missing between bounds that do not go together")
         }
         Judgement::TooLarge => "no verdict: the durations add up to too much".to_string(),
         Judgement::Controllable => {

@@ -432,6 +432,21 @@ fn actions_settle_a_conflict() {
 }
 
 #[test]
+fn what_is_offered_settles_every_conflict_and_not_only_the_one_shown() {
+    let text = "(define-control-program collect ()
+  (declare (primitive)
+    (duration (simple :lower-bound 15 :upper-bound 30 :min-observation-delay 5 :max-observation-delay 15)
+      :contingent t)))
+(define-control-program pack ()
+  (declare (primitive) (duration (simple :lower-bound 1 :upper-bound 5))))
+(define-control-program main ()
+  (sequence (:slack t) (collect) (pack))
+  (between (end collect) (start pack) (simple-temporal :upper-bound 3)))
+";
+    shows!("actions_where_one_conflict_hides_another", text, acted(text));
+}
+
+#[test]
 fn a_start_that_nobody_knows_of_can_be_given_slack() {
     let text = "(define-control-program listen ()
   (declare (primitive) (duration (simple :lower-bound 15 :upper-bound 40 :max-observation-delay 5) :contingent t)))
@@ -502,7 +517,7 @@ fn a_file_of_several_missions_has_a_verdict_for_each() {
         titles,
         [
             "controllable: whatever happens, takes 5 s, 0 contingent durations",
-            "not controllable: in the worst case 2 s are missing"
+            "not controllable: 2 s are missing between bounds that do not go together"
         ]
     );
 }

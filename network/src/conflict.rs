@@ -6,7 +6,8 @@ use crate::time::{Bound, Duration};
 /// The constraints that cannot all be honoured, whatever strategy is tried.
 ///
 /// The proof is arithmetic: going round the cycle each member contributes its signed `amount`, and the amounts add up
-/// to `total`, which is negative. So in the worst case that much time is missing.
+/// to `total`, which is negative: that much time is missing between them. It is one conflict of
+/// perhaps several, not the one that lacks most, so another may remain when this one is settled.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Conflict {
     /// The members in the order of the network: requirements first, then links; each part at most once.

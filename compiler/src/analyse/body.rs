@@ -8,6 +8,7 @@ use crate::evaluate;
 use crate::form::clip;
 use crate::nearest::nearest;
 use crate::parse::instead_of_operator;
+use crate::source::Span;
 use crate::typed::{Between, Body, EventOf, Expression, ExpressionKind};
 
 impl Analyser<'_> {
@@ -117,7 +118,10 @@ impl Analyser<'_> {
     fn event(&mut self, event: &ast::EventOf) -> Option<EventOf> {
         let arguments: Option<Vec<Expression>> =
             event.arguments.as_ref().map(|values| values.iter().map(|value| self.argument(value)).collect());
-        let program = self.names.program(&event.name, &self.definition.home);
+        let exactly = self.names.program(&event.name, &self.definition.home);
+        let occurring = || self.names.program(&occurs(&event.name)?, &self.definition.home);
+        let program = exactly.or_else(occurring);
+        let is_occurrence = exactly.is_none() && program.is_some();
         let is_label = event.name.package.is_none() && self.labels.contains(&event.name.name);
         if program.is_none() && !is_label {
             if !self.problems.has_lost(&event.name.name) {
@@ -125,16 +129,22 @@ impl Analyser<'_> {
             }
             return None;
         }
-        Some(EventOf { end: event.end, name: event.name.clone(), program, arguments, span: event.span })
+        let name = event.name.clone();
+        Some(EventOf { end: event.end, name, program, is_occurrence, arguments, span: event.span })
     }
 
     fn unknown_event(&mut self, ident: &ast::Ident) {
         let labels = self.labels.iter().map(String::as_str);
         let programs = self.program.programs.iter().map(|program| program.name.name.as_str());
         let name = clip(&ident.name);
-        let help = match nearest(&ident.name, labels.chain(programs)) {
-            Some(near) => format!("Did you mean `{near}`?"),
-            None => format!("Name the occurrence you mean: `(label {name} (...))`."),
+        let numbered = ident.name.split_once('#').map(|(program, _)| program);
+        let numbered = numbered.filter(|program| programs.clone().any(|name| name == *program));
+        let help = match (numbered.map(clip), nearest(&ident.name, labels.chain(programs))) {
+            (Some(program), _) => {
+                format!("The first occurrence is called `{program}`, the second `{program}#2`.")
+            }
+            (None, Some(near)) => format!("Did you mean `{near}`?"),
+            (None, None) => format!("Name the occurrence you mean: `(label {name} (...))`."),
         };
         self.problems.push(
             Diagnostic::error(Code::UnknownLabel, ident.span, format!("nothing is labelled `{name}`"))
@@ -190,4 +200,17 @@ impl Analyser<'_> {
 fn shape(target: &ast::ControlProgram) -> String {
     let words = std::iter::once(&target.name).chain(&target.parameters).map(|ident| clip(&ident.name));
     format!("({})", words.collect::<Vec<_>>().join(" "))
+}
+
+/// The program that `a#2` is an occurrence of: `a`. The first one has no number.
+pub(super) fn occurs(ident: &ast::Ident) -> Option<ast::Ident> {
+    let (program, number) = ident.name.rsplit_once('#')?;
+    let is_number = number.bytes().all(|b| b.is_ascii_digit()) && !number.starts_with('0');
+    if !is_number || matches!(number, "" | "1") {
+        return None;
+    }
+    // All of it is written as it is read, so what is cut off is as long in the text.
+    let end = ident.span.end.checked_sub(u32::try_from(number.len() + 1).ok()?)?;
+    let span = Span { end, ..ident.span };
+    Some(ast::Ident { package: ident.package.clone(), name: program.to_string(), span })
 }

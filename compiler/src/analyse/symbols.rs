@@ -5,6 +5,7 @@
 
 use std::collections::BTreeMap;
 
+use super::body::occurs;
 use super::names::Names;
 use crate::ast::{
     self, Amount, AmountKind, Argument, Body, Bounds, Condition, ControlProgram, EventOf, Ident, Program,
@@ -296,6 +297,10 @@ impl<'a> Finder<'a> {
         let program = || self.names.program(&event.name, self.home).map(|index| self.first.programs + index);
         if let Some(symbol) = label.or_else(program) {
             self.place(symbol, event.name.span, false);
+        } else if let Some(name) = occurs(&event.name)
+            && let Some(index) = self.names.program(&name, self.home)
+        {
+            self.place(self.first.programs + index, name.span, false);
         }
         event.arguments.iter().for_each(|arguments| self.arguments(arguments));
     }

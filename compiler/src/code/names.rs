@@ -141,7 +141,8 @@ different arguments can be told apart by these.",
 pub(super) const RESERVED_NAME: Page = Page {
     meaning: "The operators of bodies (`sequence`, `parallel`, `with-temporal-constraint`, `delay`, `let`, `let*`, `dotimes`, `label`,
 `between`), `declare`, `t` and `nil` have a meaning of their own. A program of such a name could never be called:
-`(delay)` is always the operator. What the calls of it look like is not reported again.",
+`(delay)` is always the operator. What the calls of it look like is not reported again. A label has no `#` in its
+name, as `a#2` means the second occurrence of `a`.",
     wrong: "(define-control-program delay ()
   (declare (primitive) (duration (simple :lower-bound 5 :upper-bound 10))))
 (define-control-program main () (sequence () (delay)))",

@@ -15,7 +15,8 @@ pub(super) const PACKAGE_NOT_CHOSEN: Page = Page {
     meaning:
         "The source defines several packages, and none of them, or more than one, has a program of the name to
 start from. Say which one is meant with
-`-P NAME`. With one package or none, `-P` is not needed.",
+`-P NAME`. What is outside any package is in `cl-user`, which counts as one of them. With one package or none, `-P`
+is not needed.",
     wrong: r##"(defpackage #:astronaut)
 (defpackage #:robot)"##,
     right: r##"(defpackage #:robot)
@@ -97,11 +98,12 @@ not checked.",
 
 pub(super) const NOT_CONTROLLABLE: Page = Page {
     meaning: "There is no strategy that keeps every constraint whatever Nature does within its bounds. The message names the
-bounds that do not go together and adds them up: each contributes time (`+`) or needs it (`-`), and in the
-worst case the sum is below zero. To make the mission possible it is enough to change one of them by that
-much: a longer deadline, a shorter activity, a narrower contingent duration, news that comes sooner, or slack
-where two events are forced together. A schedule for the average case may exist all the same; kirk promises
-more than that.",
+bounds that do not go together and adds them up: each contributes time (`+`) or needs it (`-`), and the
+sum is below zero: so much is missing between them. At least one of them has to change: a longer deadline, a
+shorter activity, a narrower contingent duration, news that comes sooner, or slack where two events are forced
+together. This is one conflict, not necessarily the only or the worst one: when it is settled another may
+show, so more than is missing here may be needed. A schedule for the average case may exist all the same;
+kirk promises more than that.",
     wrong: "(define-control-program drive ()
   (declare (primitive) (duration (simple :lower-bound 15 :upper-bound 20) :contingent t)))
 (define-control-program main ()

@@ -53,6 +53,7 @@ impl Expander<'_> {
                     name: &event.name.name,
                     may_be_label: event.name.package.is_none(),
                     program: event.program,
+                    is_occurrence: event.is_occurrence,
                     arguments: arguments.clone(),
                     span: event.span,
                 };

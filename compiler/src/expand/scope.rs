@@ -2,7 +2,8 @@
 //!
 //! A scope is the body of a program as it was called once, or one repetition of a `dotimes`. A name in a `between` is looked
 //! for in the scope the `between` stands in, with everything called from there, and then in the scopes around it, from the
-//! inside out. Labels come before programs. The first scope that has any decides; it must have exactly one.
+//! inside out. Labels come before programs. The first scope that has any decides; it must have exactly one. `a#2`, the name of an
+//! occurrence, means that one wherever it is written.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -38,6 +39,8 @@ pub(super) struct Wanted<'a> {
     /// False if a package was written before it.
     pub(super) may_be_label: bool,
     pub(super) program: Option<usize>,
+    /// True if the name is not that of the program, but of one occurrence of it: `a#2`.
+    pub(super) is_occurrence: bool,
     pub(super) arguments: Option<Vec<Value>>,
     pub(super) span: Span,
 }
@@ -90,8 +93,11 @@ impl Scopes {
 
     /// Prepares looking up; afterwards nothing may be added.
     pub(super) fn index(&self) -> Index<'_> {
-        let mut index = Index { scopes: self, places: BTreeMap::new() };
+        let mut index = Index { scopes: self, places: BTreeMap::new(), episodes: HashMap::new() };
         for (position, named) in self.named.iter().enumerate() {
+            if matches!(named.target, Target::Program(_)) {
+                index.episodes.insert(&named.episode, position);
+            }
             for arguments in [None, Some(key(&named.arguments))] {
                 let found = index.places.entry((&named.target, arguments)).or_default();
                 found.push((named.scope, position));
@@ -111,6 +117,8 @@ type Place = (usize, usize);
 pub(super) struct Index<'a> {
     scopes: &'a Scopes,
     places: BTreeMap<(&'a Target, Option<String>), Vec<Place>>,
+    /// The occurrences of programs by the names of their episodes, which are all different.
+    episodes: HashMap<&'a str, usize>,
 }
 
 impl Index<'_> {
@@ -121,6 +129,9 @@ impl Index<'_> {
         let arguments_key = arguments.as_deref().map(key);
         let label = Target::Label(wanted.name.to_string());
         let program = wanted.program.map(Target::Program);
+        if wanted.is_occurrence {
+            return self.occurrence(wanted, arguments.as_deref());
+        }
         let targets = [wanted.may_be_label.then_some(&label), program.as_ref()];
         for target in targets.into_iter().flatten() {
             let Some(places) = self.places.get(&(target, arguments_key.clone())) else { continue };
@@ -136,6 +147,30 @@ impl Index<'_> {
             }
         }
         Err(self.missing(wanted, arguments.as_deref(), &targets))
+    }
+
+    /// The occurrence whose name is written out: `a#2`.
+    fn occurrence(&self, wanted: &Wanted<'_>, arguments: Option<&[ValueKind]>) -> Result<&str, Diagnostic> {
+        let found = self.episodes.get(wanted.name).map(|position| &self.scopes.named[*position]);
+        let is_meant = |named: &&Named| {
+            wanted.program.map(Target::Program).as_ref() == Some(&named.target)
+                && arguments.is_none_or(|arguments| key(arguments) == key(&named.arguments))
+        };
+        if let Some(named) = found.filter(is_meant) {
+            return Ok(&named.episode);
+        }
+        let name = written(wanted.name, arguments);
+        let problem = Diagnostic::error(Code::UnknownLabel, wanted.span, format!("`{name}` does not occur"))
+            .primary("looked for in the whole mission");
+        let of_it = |named: &&Named| wanted.program.map(Target::Program).as_ref() == Some(&named.target);
+        let mut all = self.scopes.named.iter().filter(of_it);
+        Err(match (all.next(), all.next_back()) {
+            (None, _) => problem.help("It is defined, but nothing that the mission does leads to it."),
+            (Some(only), None) => problem.help(format!("There is `{}` alone.", only.episode)),
+            (Some(first), Some(last)) => {
+                problem.help(format!("There is `{}` up to `{}`.", first.episode, last.episode))
+            }
+        })
     }
 
     fn ambiguous(

@@ -33,6 +33,18 @@ pub(super) fn label(form: &Form, operator: &Form, rest: &[Form], problems: &mut 
         }
         return None;
     };
+    if name.name.contains('#') {
+        let plain = name.name.replace('#', "-");
+        problems.push(
+            Diagnostic::error(
+                Code::ReservedName,
+                name.span,
+                format!("a label cannot be called `{}`", clip(&name.name)),
+            )
+            .primary("`#` numbers occurrences: `a#2` is the second of `a`")
+            .help(format!("Give it another name, such as `{}`, here and wherever it is used.", clip(&plain))),
+        );
+    }
     let arguments = arguments.unwrap_or_default();
     Some(Body::Label(Labelled { name, arguments, body, operator: operator.span, span: form.span }))
 }

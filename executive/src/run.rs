@@ -139,6 +139,10 @@ impl Loop {
                 Err(RecvTimeoutError::Disconnected) => break,
             }
         }
+        if self.executive.is_over() {
+            // A dispatch that could not leave in time ends the mission, and that is to be on record.
+            self.perform();
+        }
     }
 
     fn timeout(&mut self, now: Time) {
@@ -315,7 +319,7 @@ impl Loop {
         }
         // The record is there before the driver is told: who resumes knows.
         self.write();
-        if !leaves || self.journal_lost() {
+        if !leaves || self.lost.is_some() {
             return;
         }
         let Sending { id, name, due, attempt, .. } = &sending;
@@ -327,10 +331,6 @@ impl Loop {
         if let Some(driver) = &self.driver {
             driver.send(sending);
         }
-    }
-
-    fn journal_lost(&self) -> bool {
-        self.lost.is_some()
     }
 
     /// If something is to leave soon, puts it on the disk now.

@@ -1,6 +1,6 @@
 //! Why a network is not controllable, as a diagnostic and as JSON.
 
-use kirk_compiler::explain::total;
+use kirk_compiler::total;
 use kirk_compiler::{Code, Diagnostic, Span, explain_conflict};
 use kirk_network::json::Seconds;
 use kirk_network::{Conflict, Network, Part, Share};

@@ -206,7 +206,7 @@ impl Observations {
                     .filter(|name| !name.internal)
                     .map(|name| name.text.clone())
                     .collect();
-                let near = kirk_compiler::nearest::nearest(name, known.iter().map(String::as_str));
+                let near = kirk_compiler::nearest(name, known.iter().map(String::as_str));
                 let near = near.map(|near| format!("did you mean `{near}`?"));
                 let list = match known.as_slice() {
                     [] => "nothing in this mission is Nature's; there is nothing to observe".to_string(),

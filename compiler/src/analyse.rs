@@ -6,7 +6,7 @@ mod calls;
 mod classes;
 mod expression;
 mod names;
-pub mod symbols;
+pub(crate) mod symbols;
 
 use std::collections::BTreeSet;
 
@@ -28,7 +28,7 @@ pub(crate) use bounds::{negative, reversed};
 pub(crate) use calls::calls_of;
 
 /// Resolves all names, checks all declarations, and finds the program to start from.
-pub fn analyse(program: &ast::Program, options: &Options, problems: &mut Problems) -> Model {
+pub(crate) fn analyse(program: &ast::Program, options: &Options, problems: &mut Problems) -> Model {
     let names = Names::new(program, problems);
     let classes = Classes::new(program, &names, problems);
     let numbers = named_numbers(program, &names, problems);

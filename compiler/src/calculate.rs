@@ -114,7 +114,7 @@ impl Operator {
 }
 
 /// So many units of `unit` microseconds.
-pub fn scale(number: Duration, unit: i64) -> Result<Duration, NoResult> {
+pub(crate) fn scale(number: Duration, unit: i64) -> Result<Duration, NoResult> {
     let micros = limited(exactly(i128::from(number.as_micros()) * i128::from(unit), SECOND)?)?;
     i64::try_from(micros).map(Duration::from_micros).map_err(|_| NoResult::TooLarge)
 }

@@ -22,7 +22,7 @@ use scope::{Named, Scopes, Target};
 pub use limits::{MAX_DEPTH, MAX_EPISODES};
 
 /// The tree of episodes of the program to start from. Expects a model without errors: in particular no recursion.
-pub fn expand(model: &Model, problems: &mut Problems) -> Option<Episode> {
+pub(crate) fn expand(model: &Model, problems: &mut Problems) -> Option<Episode> {
     let entry = model.entry?;
     if !limits::check(model, entry, problems) {
         return None;

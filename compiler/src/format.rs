@@ -16,7 +16,7 @@ use crate::read::read;
 use crate::source::Source;
 
 /// How long a line may be, if there is a choice.
-pub const WIDTH: usize = 100;
+pub(crate) const WIDTH: usize = 100;
 
 /// The text in its canonical layout, or why it cannot be read.
 ///

@@ -7,9 +7,9 @@
 //!                                             conflict (from kirk-network) ---> explain ---> diagnostic
 //! ```
 //!
-//! Each phase is one public function in a file of its own. All but the last two take a program however broken, return
+//! Each phase is one function in a file of its own. All but the last two take a program however broken, return
 //! what can be made of it, and append what is wrong to one [`problem::Problems`]; `expand` and `lower` run only on a
-//! program without errors. [`compile`] calls them in turn:
+//! program without errors. [`front`](fn@front) is the phases up to `analyse`, [`unfold`](fn@unfold) the rest, and [`compile`] is both:
 //!
 //! ```
 //! use kirk_compiler::{Options, Source, compile};
@@ -63,37 +63,41 @@
 //! Files, colours and exit statuses (the command line has them), merging and every verdict (`kirk-network`), planning with
 //! conditions and effects, macros and functions of Lisp.
 
-pub mod analyse;
+mod analyse;
 pub mod ast;
-pub mod calculate;
+mod calculate;
 pub mod code;
-pub mod diagnostic;
+mod diagnostic;
 pub mod episode;
 mod evaluate;
-pub mod expand;
-pub mod explain;
+mod expand;
+mod explain;
 pub mod form;
-pub mod format;
-pub mod lower;
-pub mod nearest;
-pub mod notes;
-pub mod parse;
+mod format;
+mod front;
+mod lower;
+mod nearest;
+mod notes;
+mod parse;
 pub mod problem;
 pub mod read;
-pub mod sexpr;
-pub mod source;
+mod sexpr;
+mod source;
 pub mod typed;
+mod unfold;
 
 pub use analyse::symbols::{Place, Symbol, SymbolKind, Symbols, symbols};
 pub use code::{Code, explain};
 pub use diagnostic::{Diagnostic, Label, Severity};
-pub use explain::explain_conflict;
+pub use expand::{MAX_DEPTH, MAX_EPISODES};
+pub use explain::{explain_conflict, total};
 pub use format::format;
-pub use lower::{Origin, OriginKind, Origins, Plan};
+pub use front::{Front, front};
+pub use lower::{Origin, OriginKind, Origins, Plan, events_of};
+pub use nearest::nearest;
 pub use sexpr::to_sexpr;
 pub use source::{LineIndex, Source, Span};
-
-use problem::Problems;
+pub use unfold::{Unfolded, unfold};
 
 /// What to compile of the sources.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -125,26 +129,8 @@ impl Default for Options {
 
 /// Compiles the sources as one program.
 pub fn compile(sources: &[Source], options: &Options) -> Compilation {
-    let mut problems = Problems::default();
-    let mut ast = ast::Program::default();
-    for (index, source) in sources.iter().enumerate() {
-        let forms = read::read(source, index as u32, &mut problems);
-        parse::parse(&forms, &mut ast, &mut problems);
-    }
-    let model = analyse::analyse(&ast, options, &mut problems);
-    let mut episodes = None;
-    let mut plan = None;
-    if !problems.has_errors() {
-        episodes = expand::expand(&model, &mut problems);
-    }
-    if !problems.has_errors()
-        && let Some(root) = &episodes
-        && let Some(lowered) = lower::lower(root)
-    {
-        for note in notes::notes(&lowered, root) {
-            problems.push(note);
-        }
-        plan = Some(lowered);
-    }
+    let Front { program: ast, model, mut problems, .. } = front(sources, options);
+    let unfolded = if problems.has_errors() { None } else { unfold(&model, &mut problems) };
+    let (episodes, plan) = unfolded.map_or((None, None), |it| (Some(it.episodes), it.plan));
     Compilation { ast, episodes, plan, diagnostics: problems.into_sorted() }
 }

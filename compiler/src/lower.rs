@@ -63,7 +63,7 @@ pub enum OriginKind {
 pub(crate) const EMPTY: &str = "is empty and takes no time";
 
 /// Builds the network. `None` only if the tree is not what `expand` makes.
-pub fn lower(root: &Episode) -> Option<Plan> {
+pub(crate) fn lower(root: &Episode) -> Option<Plan> {
     let mut lowering = Lowering {
         events: Vec::new(),
         requirements: Vec::new(),
@@ -85,7 +85,7 @@ struct Lowering {
 }
 
 /// The start and the end of an episode.
-pub type Ends = (EventId, EventId);
+pub(crate) type Ends = (EventId, EventId);
 
 impl Lowering {
     /// Adds an episode with all its parts; returns its start and its end. Events are numbered in the order in which they

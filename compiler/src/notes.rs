@@ -18,7 +18,7 @@ use crate::lower::{Origins, Plan, events_of};
 use crate::source::Span;
 
 /// All notes on a program that was unfolded and lowered.
-pub fn notes(plan: &Plan, root: &Episode) -> Vec<Diagnostic> {
+pub(crate) fn notes(plan: &Plan, root: &Episode) -> Vec<Diagnostic> {
     let Plan { network, origins, .. } = plan;
     let mut notes = notes_on_bounds(root);
     notes.extend(notes_on_merging(network, origins, root));

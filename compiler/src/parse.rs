@@ -27,10 +27,10 @@ use crate::source::Span;
 use declaration::DECLARATIONS;
 
 /// The package of definitions that no `in-package` comes before.
-pub const DEFAULT_PACKAGE: &str = "cl-user";
+pub(crate) const DEFAULT_PACKAGE: &str = "cl-user";
 
 /// Parses the top-level forms of one source and adds what they define to `program`.
-pub fn parse(forms: &[Form], program: &mut Program, problems: &mut Problems) {
+pub(crate) fn parse(forms: &[Form], program: &mut Program, problems: &mut Problems) {
     reserved_names(forms, problems);
     let mut home = DEFAULT_PACKAGE.to_string();
     let defined = defined(forms, program);

@@ -5,14 +5,10 @@
 //! called and not defined is a warning, as it may be defined elsewhere. A file whose packages each have a `main` is several
 //! missions. `kirk check` has no such doubts: it is told what to start.
 
-use kirk_compiler::analyse::analyse as resolve;
 use kirk_compiler::ast::Program;
 use kirk_compiler::form::Form;
-use kirk_compiler::parse::parse;
-use kirk_compiler::problem::Problems;
-use kirk_compiler::read::read;
 use kirk_compiler::typed::{Body, Model, Work};
-use kirk_compiler::{Code, Diagnostic, Options, Severity, Source, Symbols, symbols};
+use kirk_compiler::{Code, Diagnostic, Front, Options, Severity, Source, Symbols, front};
 
 use crate::lines::Lines;
 
@@ -57,12 +53,10 @@ impl Analysis {
 /// Analyses a text.
 pub fn analyse(text: String) -> (Analysis, Unjudged) {
     let source = Source::new("", text);
-    let mut problems = Problems::default();
-    let mut program = Program::default();
-    let forms = read(&source, 0, &mut problems);
-    parse(&forms, &mut program, &mut problems);
-    let model = resolve(&program, &Options::default(), &mut problems);
-    let symbols = symbols(&program);
+    let front = front(std::slice::from_ref(&source), &Options::default());
+    let symbols = front.symbols();
+    let Front { mut forms, program, model, problems } = front;
+    let forms = forms.pop().unwrap_or_default();
     let mut diagnostics = problems.into_sorted();
     let is_library = model.entry.is_none();
     diagnostics.retain(|d| !matches!(d.code, Code::NoEntry | Code::PackageNotChosen));

@@ -3,11 +3,8 @@
 use std::collections::BTreeMap;
 
 use kirk_compiler::episode::{Episode, Kind};
-use kirk_compiler::expand::expand;
-use kirk_compiler::lower::{events_of, lower};
-use kirk_compiler::notes::notes;
 use kirk_compiler::problem::Problems;
-use kirk_compiler::{Code, Diagnostic, Plan, Span, explain_conflict};
+use kirk_compiler::{Code, Diagnostic, Plan, Span, Unfolded, events_of, explain_conflict, unfold};
 use kirk_network::windows::{Window, windows};
 use kirk_network::{Conflict, EventId, Verdict, check};
 
@@ -63,17 +60,9 @@ pub fn judge(unjudged: Unjudged) -> (Vec<Mission>, Vec<Diagnostic>) {
     let mut problems = Problems::default();
     for root in roots {
         model.entry = Some(root);
-        let before = problems.errors();
-        let Some(episodes) = expand(&model, &mut problems) else { continue };
-        if problems.errors() > before {
-            continue;
-        }
-        let Some(plan) = lower(&episodes) else { continue };
-        let notes = notes(&plan, &episodes);
+        let Some(Unfolded { episodes, plan: Some(plan) }) = unfold(&model, &mut problems) else { continue };
         let (mission, verdict) = mission(&episodes, plan);
-        for diagnostic in notes.into_iter().chain(verdict) {
-            problems.push(diagnostic);
-        }
+        verdict.into_iter().for_each(|diagnostic| problems.push(diagnostic));
         missions.push(mission);
     }
     (missions, problems.into_sorted())

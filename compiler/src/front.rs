@@ -1,0 +1,45 @@
+//! The front of the compiler: from sources to a resolved program, whatever is wrong with them.
+
+use crate::analyse::analyse;
+use crate::ast::Program;
+use crate::form::Form;
+use crate::parse::parse;
+use crate::problem::Problems;
+use crate::read::read;
+use crate::source::Source;
+use crate::typed::Model;
+use crate::{Options, Symbols, symbols};
+
+/// What is known of sources before anything is unfolded.
+#[derive(Debug)]
+pub struct Front {
+    /// The top-level forms of each source.
+    pub forms: Vec<Vec<Form>>,
+    /// The program as written.
+    pub program: Program,
+    /// The program with every name resolved and every bound checked, and the one to start from.
+    pub model: Model,
+    /// What there is to say.
+    pub problems: Problems,
+}
+
+/// Reads, parses and analyses the sources as one program.
+pub fn front(sources: &[Source], options: &Options) -> Front {
+    let mut problems = Problems::default();
+    let mut program = Program::default();
+    let mut all = Vec::with_capacity(sources.len());
+    for (index, source) in sources.iter().enumerate() {
+        let forms = read(source, index as u32, &mut problems);
+        parse(&forms, &mut program, &mut problems);
+        all.push(forms);
+    }
+    let model = analyse(&program, options, &mut problems);
+    Front { forms: all, program, model, problems }
+}
+
+impl Front {
+    /// All names, with every place where they stand.
+    pub fn symbols(&self) -> Symbols {
+        symbols(&self.program)
+    }
+}

@@ -1,0 +1,32 @@
+//! From a resolved program to its network: every call becomes an episode, every episode two events.
+
+use crate::episode::Episode;
+use crate::expand::expand;
+use crate::lower::{Plan, lower};
+use crate::notes::notes;
+use crate::problem::Problems;
+use crate::typed::Model;
+
+/// A program unfolded.
+#[derive(Clone, Debug)]
+pub struct Unfolded {
+    /// The tree of its episodes.
+    pub episodes: Episode,
+    /// Its network and where that comes from; `None` if unfolding it was an error.
+    pub plan: Option<Plan>,
+}
+
+/// Unfolds the program the model starts from, and notes what may surprise. Expects a model without errors; `None` if there is
+/// nothing to start from, or too much to unfold.
+pub fn unfold(model: &Model, problems: &mut Problems) -> Option<Unfolded> {
+    let before = problems.errors();
+    let episodes = expand(model, problems)?;
+    if problems.errors() > before {
+        return Some(Unfolded { episodes, plan: None });
+    }
+    let plan = lower(&episodes);
+    if let Some(plan) = &plan {
+        notes(plan, &episodes).into_iter().for_each(|note| problems.push(note));
+    }
+    Some(Unfolded { episodes, plan })
+}

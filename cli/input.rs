@@ -6,7 +6,7 @@ use std::path::Path;
 
 use kirk_compiler::{Code, Compilation, Diagnostic, Options, Origins, Source, Span, compile};
 use kirk_network::json::ReadProblem;
-use kirk_network::{Network, Places, graphml, json, plain};
+use kirk_network::{Network, Places, graphml, json, kinds, plain};
 
 use crate::args::Selection;
 
@@ -128,10 +128,20 @@ fn kind(file: &str, text: &str) -> Kind {
         Some("json") => Kind::Network(json::read_with_places),
         Some("stnu") => Kind::Network(graphml::read_with_places),
         Some("plainstnu") => Kind::Network(plain::read_with_places),
+        Some("ostnu") => Kind::Network(with_oracles),
         _ if start.starts_with('{') => Kind::Network(json::read_with_places),
         _ if start.starts_with('<') && start.contains("graphml") => Kind::Network(graphml::read_with_places),
+        _ if start.starts_with("# ") && start.contains("\n# Time-Point Names") => {
+            Kind::Network(plain::read_with_places)
+        }
         _ => Kind::Rmpl,
     }
+}
+
+/// What the oracles of a network tell is not part of the model: without them the verdict would be another.
+fn with_oracles(_: &str) -> Result<(Network, Places), Vec<ReadProblem>> {
+    let refused = kinds::check("OSTNU").err().unwrap_or_default();
+    Err(vec![ReadProblem { offset: 0, message: format!("the kind of network is {refused}") }])
 }
 
 /// The bytes of a file, at most so many, or a sentence that says why not.

@@ -259,10 +259,20 @@ fn networks_of_other_tools_are_input_too() {
     let check = kirk_with_input(&["check", "-"], &text);
     assert_eq!(check.status.code(), Some(0), "{}", stderr(&check));
     is_refused(&["check", "-"], b"<?xml version=\"1.0\"?><graphml><grph/></graphml>", "K0702");
+    // So is plain text, by its sections.
+    let text = fs::read("tests/networks/lane50_dc_000.plainstnu").unwrap();
+    let check = kirk_with_input(&["check", "-"], &text);
+    assert_eq!(check.status.code(), Some(0), "{}", stderr(&check));
     let folder = tempfile::tempdir().unwrap();
     let wrong = folder.path().join("wrong.plainstnu");
     fs::write(&wrong, "# Time-Point Names\nZ A\n# Ordinary Edges\nA ten Z\n").unwrap();
     is_refused(&["check", wrong.to_str().unwrap()], b"", "line 4");
+    // A network with oracles is what its name says, in either form.
+    let oracles = folder.path().join("oracles.ostnu");
+    for text in [fs::read(stnu).unwrap(), text] {
+        fs::write(&oracles, text).unwrap();
+        is_refused(&["check", oracles.to_str().unwrap()], b"", "`OSTNU`, an STNU with oracles");
+    }
 }
 
 #[test]

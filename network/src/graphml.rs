@@ -9,9 +9,9 @@
 //! | plain | `Value` y | `Value` -x |
 //!
 //! A `Value` beside a `LabeledValue` is an ordinary edge of its own. Waits (dispatchable networks), observations and
-//! propositional labels (conditional networks) are refused; drawing positions and the like are skipped. The format
-//! knows no delays. It allows one edge from one node to another, so of several requirements between two events the
-//! tightest bounds are written. The tool itself reads whole numbers only.
+//! propositional labels (conditional networks) are refused; drawing positions and the like are skipped. Quotes around a name
+//! are no part of it. The format knows no delays. It allows one edge from one node to another, so of several requirements
+//! between two events the tightest bounds are written. The tool itself reads whole numbers only.
 //!
 //! What is our own, and skipped by others: a node may carry `Names`, the names of its event as a JSON list, when its id
 //! is not its only name, and `Internal`, those of them that no user chose; the graph may carry `Requirements`, when its
@@ -26,9 +26,10 @@ use std::fmt::Display;
 use std::ops::Range;
 
 use crate::json::ReadProblem;
+use crate::kinds;
 use crate::model::{ContingentLink, Delay, Event, EventId, Name, Network, normal_name};
 use crate::places::Places;
-use crate::plain::{Intervals, about_link};
+use crate::plain::{Intervals, about_link, unquoted};
 use crate::time::Duration;
 use scan::{Data, Document, Element, scan};
 
@@ -80,10 +81,10 @@ impl Reader<'_> {
         for data in &document.graph_data {
             match data.key.as_str() {
                 "Name" => name.clone_from(&data.text),
-                "NetworkType" if !["STN", "STNU", ""].contains(&data.text.trim()) => {
-                    let kind = data.text.trim();
-                    let message = format!("the network type is `{kind}`; this kirk reads `STNU` and `STN`");
-                    self.problem(data.offset, message);
+                "NetworkType" => {
+                    if let Err(refused) = kinds::check(data.text.trim()) {
+                        self.problem(data.offset, format!("the network type is {refused}"));
+                    }
                 }
                 _ => {}
             }
@@ -93,7 +94,7 @@ impl Reader<'_> {
         let mut names: BTreeSet<String> = BTreeSet::new();
         for node in &document.nodes {
             let event = EventId(events.len() as u32);
-            let Some(id) = &node.id else {
+            let Some(id) = node.id.as_deref().map(unquoted) else {
                 self.problem(node.offset, "a node has no `id`".to_string());
                 continue;
             };
@@ -242,7 +243,7 @@ impl Reader<'_> {
     ) -> Option<Edge<'d>> {
         let name = element.describe("edge");
         let mut end = |what: &str, id: &Option<String>| {
-            let found = id.as_deref().and_then(|id| ids.get(id)).copied();
+            let found = id.as_deref().and_then(|id| ids.get(unquoted(id))).copied();
             if found.is_none() {
                 let message = match id {
                     None => format!("{name} has no `{what}`"),
@@ -433,7 +434,7 @@ impl Reader<'_> {
             return None;
         };
         let value = self.seconds(name, data, value.trim());
-        let of = ids.get(event).copied();
+        let of = ids.get(unquoted(event)).copied();
         if of.is_none() {
             self.problem(data.offset, format!("{name}: there is no node `{event}`, which `{text}` names"));
         }

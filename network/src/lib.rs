@@ -64,6 +64,7 @@ pub mod generate;
 pub mod graphml;
 mod hierarchy;
 pub mod json;
+pub mod kinds;
 pub mod merge;
 pub mod model;
 pub mod news;

@@ -355,6 +355,14 @@ impl fmt::Display for ModelError {
             ModelError::RequirementReversed { index, lower, upper } => {
                 write!(f, "requirements[{index}]: the lower bound {lower} is above the upper bound {upper}")
             }
+            ModelError::LinkBounds { index, lower, upper } if lower > upper && *lower >= Duration::ZERO => {
+                write!(
+                    f,
+                    "contingents[{index}]: the lower bound {lower} is above the upper bound {upper}: Nature has no \
+                     duration to choose from. Only what is required may contradict itself: two requirements in \
+                     `.json`, two ordinary edges in `.stnu` and `.plainstnu`"
+                )
+            }
             ModelError::LinkBounds { index, lower, upper } => write!(
                 f,
                 "contingents[{index}]: the bounds [{lower}, {upper}] are not 0 <= lower <= upper; Nature needs a \

@@ -1,7 +1,8 @@
 //! Reads plain text STNUs (`.plainstnu`), the exchange format of several STNU benchmarks.
 //!
 //! Lines that start with `#` open a section or are comments. An ordinary edge `A 10 B` reads `B - A <= 10`; a contingent
-//! link `A 4 6 C` says that Nature picks `C - A` in `[4, 6]`. The origin is the time-point `Z`. Times are seconds.
+//! link `A 4 6 C` says that Nature picks `C - A` in `[4, 6]`. The origin is the time-point `Z`. Times are seconds. Names
+//! may be quoted (`"A" 10 "B b"`), as the CSTNU Tool writes them; the quotes are no part of the name.
 //!
 //! ```
 //! let network = kirk_network::plain::read(
@@ -14,6 +15,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::ops::Range;
 
 use crate::json::ReadProblem;
+use crate::kinds;
 use crate::model::{
     ContingentLink, Delay, Event, EventId, ModelError, Name, Network, Requirement, normal_name,
 };
@@ -93,10 +95,12 @@ pub(crate) fn about_link(error: &ModelError) -> (Option<usize>, String) {
     }
 }
 
+/// A word without its quotes, and where it stands with them.
 #[derive(Clone, Copy)]
 struct Word<'a> {
     text: &'a str,
     offset: usize,
+    end: usize,
 }
 
 struct Line<'a> {
@@ -109,14 +113,38 @@ struct Line<'a> {
 impl Line<'_> {
     /// From the first word to the last.
     fn range(&self) -> Range<usize> {
-        let end = |word: &Word<'_>| word.offset + word.text.len();
-        self.words.first().map_or(self.offset, |word| word.offset)..self.words.last().map_or(self.offset, end)
+        self.words.first().map_or(self.offset, |word| word.offset)
+            ..self.words.last().map_or(self.offset, |word| word.end)
     }
 }
 
+/// Splits a line at white space that is not in quotes.
 fn words(line: &str, offset: usize) -> Vec<Word<'_>> {
-    let start = |word: &str| offset + (word.as_ptr() as usize - line.as_ptr() as usize);
-    line.split_whitespace().map(|text| Word { text, offset: start(text) }).collect()
+    let mut words = Vec::new();
+    let mut rest = line.trim_start();
+    while !rest.is_empty() {
+        let (word, after) = rest.split_at(length_of_word(rest));
+        let start = offset + (line.len() - rest.len());
+        words.push(Word { text: unquoted(word), offset: start, end: start + word.len() });
+        rest = after.trim_start();
+    }
+    words
+}
+
+/// A quote that is not closed before the end of a word is a character like others.
+fn length_of_word(text: &str) -> usize {
+    let to_space = |text: &str| text.find(char::is_whitespace).unwrap_or(text.len());
+    let Some(quote) = text.chars().next().filter(|char| QUOTES.contains(char)) else { return to_space(text) };
+    let closes = |&(at, _): &(usize, &str)| at > 0 && to_space(&text[at + 1..]) == 0;
+    text.match_indices(quote).find(closes).map_or(to_space(text), |(at, _)| at + 1)
+}
+
+const QUOTES: [char; 2] = ['"', '\''];
+
+/// A name without the quotes around it, if it has any.
+pub(crate) fn unquoted(name: &str) -> &str {
+    let inside = |&quote: &char| name.strip_prefix(quote).and_then(|rest| rest.strip_suffix(quote));
+    QUOTES.iter().find_map(inside).unwrap_or(name)
 }
 
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
@@ -180,11 +208,8 @@ impl<'a> Reader<'a> {
                 self.problem(first.offset, message);
             }
             Section::Kind => {
-                if !["stn", "stnu"].contains(&line.text.to_lowercase().as_str()) {
-                    let message = format!(
-                        "line {}: the kind of network is `{}`; this kirk reads `STNU` and `STN`",
-                        line.number, line.text
-                    );
+                if let Err(refused) = kinds::check(unquoted(line.text)) {
+                    let message = format!("line {}: the kind of network is {refused}", line.number);
                     self.problem(first.offset, message);
                 }
             }
@@ -204,6 +229,9 @@ impl<'a> Reader<'a> {
         let mut names: BTreeMap<String, &'a str> = BTreeMap::new();
         let mut events = Vec::new();
         for (number, word) in std::mem::take(&mut self.points) {
+            if word.text.is_empty() {
+                self.problem(word.offset, format!("line {number}: a time-point needs a name"));
+            }
             if index.insert(word.text, EventId(events.len() as u32)).is_some() {
                 let message = format!("line {number}: the time-point `{}` is listed twice", word.text);
                 self.problem(word.offset, message);

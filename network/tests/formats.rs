@@ -122,6 +122,8 @@ fn random_network(random: &mut Random, parallel: bool) -> Network {
         "A_B",
         "]]>",
         "node2",
+        "'quoted'",
+        "\"\"",
         "",
         " ",
     ];
@@ -351,7 +353,7 @@ fn broken_contingent_links_get_a_message_each() {
                 + &edge("b", "C", "A", "Type=contingent Value=-4")),
         )),
     ];
-    assert_snapshot!(all.join("-\n"), @r#"
+    assert_snapshot!(all.join("-\n"), @r"
     4:1 edge `f`: expected a `LabeledValue` (`LC(C):lower` towards the contingent event C, `UC(C):-upper` away from it) or a `Value` (`upper` towards, `-lower` away)
     -
     5:1 edge `b`: expected a `LabeledValue` (`LC(C):lower` towards the contingent event C, `UC(C):-upper` away from it) or a `Value` (`upper` towards, `-lower` away)
@@ -373,7 +375,7 @@ fn broken_contingent_links_get_a_message_each() {
     4:95 edge `f`: there is no node `Q`, which `LC(Q):1` names
     5:95 edge `b`: expected `LC(C):lower` or `UC(C):-upper`, not `UC(C:-3`
     -
-    4:1 edge `f`: the bounds [5, 3] are not 0 <= lower <= upper; Nature needs a duration to choose from
+    4:1 edge `f`: the lower bound 5 is above the upper bound 3: Nature has no duration to choose from. Only what is required may contradict itself: two requirements in `.json`, two ordinary edges in `.stnu` and `.plainstnu`
     -
     4:1 edge `f`: the bounds [-1, 3] are not 0 <= lower <= upper; Nature needs a duration to choose from
     -
@@ -386,7 +388,7 @@ fn broken_contingent_links_get_a_message_each() {
     8:1 edge `h`: there is another contingent edge from `A` to `C`
     -
     6:1 edge `f`: `C` already ends another contingent link; an event happens once
-    "#);
+    ");
 }
 
 #[test]
@@ -411,7 +413,7 @@ fn broken_files_get_a_message() {
         "<graphml><graph><node id='Z></graph></graphml>",
     ];
     let shown: Vec<String> = all.iter().map(|text| broken_graphml(text)).collect();
-    assert_snapshot!(shown.join("-\n"), @r#"
+    assert_snapshot!(shown.join("-\n"), @r"
     1:1 expected a GraphML file, with `<graphml>` as its outermost element
     -
     1:1 expected a GraphML file, with `<graphml>` as its outermost element
@@ -431,7 +433,7 @@ fn broken_files_get_a_message() {
     1:31 unexpected text `hello`
     1:54 unexpected text `trailing`
     -
-    1:41 the network type is `CSTNU`; this kirk reads `STNU` and `STN`
+    1:41 the network type is `CSTNU`, a conditional network with uncertainty (what must hold depends on what is observed); this kirk reads `STNU` and `STN`
     -
     1:10 there is no node `Z`: the origin, executed first at time 0, is the node with that id
     1:17 `<node>`: it has `id` twice
@@ -451,7 +453,7 @@ fn broken_files_get_a_message() {
     1:17 this is not XML: syntax error: comment not closed: `-->` not found before end of input
     -
     1:17 this is not XML: syntax error: attribute value not closed: `'` not found before end of input
-    "#);
+    ");
 }
 
 #[test]
@@ -528,6 +530,84 @@ fn plain_text_may_have_blank_lines_comments_and_carriage_returns() {
 }
 
 #[test]
+fn names_in_quotes_are_the_names_without_them() {
+    let sample_text = sample("lane50_dc_000.plainstnu");
+    let quoted: String = sample_text
+        .lines()
+        .map(|line| {
+            let name = |word: &str| match word.parse::<i64>() {
+                Ok(_) => word.to_string(),
+                Err(_) => format!("\"{word}\""),
+            };
+            let words = || line.split(' ').map(name).collect::<Vec<_>>().join(" ");
+            let plain = line.starts_with('#') || line == "STNU";
+            (if plain { line.to_string() } else { words() }) + "\n"
+        })
+        .collect();
+    assert!(quoted.contains("\"A1\" 4 6 \"C1\""), "the links of the sample are quoted");
+    assert_eq!(plain::read(&quoted).unwrap(), plain::read(&sample_text).unwrap());
+    let text = "# KIND OF NETWORK\n\"STNU\"\n# Time-Point Names\n'Z' \"the door\" 'it''s open' isn't\n# Ordinary Edges\n\
+                \"the door\" 10 'it''s open'\nZ 4 isn't\n";
+    let read = plain::read(text).unwrap_or_else(|problems| panic!("{}", show(text, &problems)));
+    let names: Vec<&str> = read.event_ids().map(|event| read.id(event)).collect();
+    assert_eq!(names, ["Z", "the door", "it''s open", "isn't"]);
+    // A place is where the text stands, quotes and all.
+    let (_, places) = plain::read_with_places(text).unwrap();
+    assert_eq!(&text[places.requirements[0][0].clone()], "\"the door\" 10 'it''s open'");
+
+    let xml = sample("lane50_dc_000.stnu");
+    let escaped = xml.replace("LC(", "LC(&quot;").replace("UC(", "UC(&quot;").replace("):", "&quot;):");
+    assert!(escaped.contains("LC(&quot;C1&quot;):4"));
+    assert_eq!(graphml::read(&escaped).unwrap(), graphml::read(&xml).unwrap());
+    let small = |quote: &str| {
+        let name = |name: &str| format!("'{quote}{name}{quote}'");
+        let (z, a, c) = (name("Z"), name("A"), name("C"));
+        format!(
+            "<graphml><graph><node id={z}/><node id={a}/><node id={c}/>\
+             <edge source={a} target={c}><data key='Type'>contingent</data><data key='Value'>4</data></edge>\
+             <edge source={c} target={a}><data key='Type'>contingent</data><data key='Value'>-1</data></edge>\
+             <edge source={z} target={a}><data key='Value'>9</data></edge></graph></graphml>"
+        )
+    };
+    assert_eq!(graphml::read(&small("&quot;")).unwrap(), graphml::read(&small("")).unwrap());
+}
+
+#[test]
+fn broken_quotes_get_a_message() {
+    let text = "# Time-Point Names\nZ \"A b\" ''\n# Ordinary Edges\n\"A b 10 Z\nA 10 'Z'\n";
+    let problems = plain::read(text).unwrap_err();
+    assert_snapshot!(show(text, &problems), @r#"
+    2:9 line 2: a time-point needs a name
+    4:1 line 4: expected an edge `A 10 B`, which reads B - A <= 10; this line has 4 words: `"A b 10 Z`
+    5:1 line 5: there is no time-point `A`
+    "#);
+}
+
+#[test]
+fn networks_of_other_kinds_are_named_as_what_they_are() {
+    let kinds = ["OSTNU", "CSTN", "CSTNU", "CSTNPSU", "PCSTNU", "PSTN", "pstnu", "WISHES"];
+    let messages = kinds.map(|kind| {
+        let xml =
+            format!("<graphml><graph><data key='NetworkType'>{kind}</data><node id='Z'/></graph></graphml>");
+        let text = format!("# KIND OF NETWORK\n{kind}\n# Time-Point Names\nZ\n");
+        let message = graphml::read(&xml).unwrap_err().remove(0).message;
+        let other = plain::read(&text).unwrap_err().remove(0).message;
+        assert_eq!(other.split_once(" is ").unwrap().1, message.split_once(" is ").unwrap().1);
+        message
+    });
+    assert_snapshot!(messages.join("\n"), @r"
+    the network type is `OSTNU`, an STNU with oracles (events that tell how long something will take before it is over); this kirk reads `STNU` and `STN`
+    the network type is `CSTN`, a conditional network (what must hold depends on what is observed); this kirk reads `STNU` and `STN`
+    the network type is `CSTNU`, a conditional network with uncertainty (what must hold depends on what is observed); this kirk reads `STNU` and `STN`
+    the network type is `CSTNPSU`, a conditional network whose uncertain durations may be shrunk in part; this kirk reads `STNU` and `STN`
+    the network type is `PCSTNU`, a conditional network with parameters; this kirk reads `STNU` and `STN`
+    the network type is `PSTN`, a probabilistic network (durations have distributions, not bounds); this kirk reads `STNU` and `STN`
+    the network type is `pstnu`, a probabilistic network (durations have distributions, not bounds); this kirk reads `STNU` and `STN`
+    the network type is `WISHES`; this kirk reads `STNU` and `STN`
+    ");
+}
+
+#[test]
 fn broken_plain_text_gets_a_message_for_each_line() {
     let broken = |text: &str| match plain::read(text) {
         Ok(_) => panic!("this should not be read:\n{text}"),
@@ -545,13 +625,13 @@ fn broken_plain_text_gets_a_message_for_each_line() {
         broken("# Time-Point Names\nZ A C\n# Contingent Links\nA 6 4 C\nZ 1 2 C\nA -1 2 Z\n"),
         broken("# Time-Point Names\nZ A C\n# Contingent Links\nA 4 6 C\nC 4 6 A\n"),
     ];
-    assert_snapshot!(all.join("-\n"), @r#"
+    assert_snapshot!(all.join("-\n"), @r"
     1:1 there is no section `# Time-Point Names`
     -
     1:1 line 1: expected a section such as `# Time-Point Names` or `# Ordinary Edges` before `A`
     2:1 there is no section `# Time-Point Names`
     -
-    2:1 line 2: the kind of network is `CSTNU`; this kirk reads `STNU` and `STN`
+    2:1 line 2: the kind of network is `CSTNU`, a conditional network with uncertainty (what must hold depends on what is observed); this kirk reads `STNU` and `STN`
     4:1 line 4: the number of ordinary edges is given as `9`, but there are 0
     6:1 line 6: the number of contingent links is given as `many`, but there are 0
     8:7 line 8: the time-point `A` is listed twice
@@ -566,13 +646,13 @@ fn broken_plain_text_gets_a_message_for_each_line() {
     10:3 line 10: the lower bound `x`: this is not a number of seconds
     11:1 there is no time-point `Z`: the origin, executed first at time 0, has that name
     -
-    4:1 line 4: the bounds [6, 4] are not 0 <= lower <= upper; Nature needs a duration to choose from
+    4:1 line 4: the lower bound 6 is above the upper bound 4: Nature has no duration to choose from. Only what is required may contradict itself: two requirements in `.json`, two ordinary edges in `.stnu` and `.plainstnu`
     5:1 line 5: `C` already ends another contingent link; an event happens once
     6:1 line 6: the bounds [-1, 2] are not 0 <= lower <= upper; Nature needs a duration to choose from
     6:1 line 6: the link ends in the origin, which is executed first
     -
     6:1 the contingent links lead from `A` back to itself: none of them could ever start
-    "#);
+    ");
 }
 
 #[test]

@@ -7,7 +7,7 @@ use quick_xml::escape::escape;
 
 use super::exact;
 use crate::model::{Delay, EventId, Network};
-use crate::plain::Intervals;
+use crate::plain::{Intervals, unquoted};
 use crate::time::Duration;
 
 /// Writes a network without delays. It reads back equal.
@@ -87,7 +87,7 @@ impl<'a> Writer<'a> {
             let id = network.id(event);
             if event == network.origin() {
                 "Z".to_string()
-            } else if id != "Z" && id.chars().all(is_xml) {
+            } else if id != "Z" && id == unquoted(id) && id.chars().all(is_xml) {
                 id.to_string()
             } else {
                 let tries = (0..).map(|n| format!("node{}{}", event.0, "_".repeat(n)));

@@ -4,6 +4,7 @@
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
@@ -239,6 +240,21 @@ fn of_many_changes_the_last_text_counts_and_old_requests_can_be_withdrawn() {
     };
     // It was withdrawn, or had been answered before.
     assert!(answer["error"]["code"] == -32800 || answer["result"]["contents"].is_object(), "{answer}");
+}
+
+#[test]
+fn colours_of_a_line_of_many_activities_come_at_once() {
+    let hop = "(define-control-program hop () (declare (primitive) (duration (simple :upper-bound 1))))";
+    let text = format!("{hop} (define-control-program main () (sequence (){}))", " (hop)".repeat(60_000));
+    let mut editor = Editor::open(&text);
+    let document = json!({"textDocument": {"uri": URI}});
+    // So that what is measured begins with an analysed text.
+    editor.ask("textDocument/documentSymbol", document.clone()).unwrap();
+    let start = Instant::now();
+    let tokens = editor.ask("textDocument/semanticTokens/full", document).unwrap();
+    assert_eq!(tokens["data"].as_array().unwrap().len() / 5, 60_000 + 11);
+    // A walk over the line for each of them takes minutes.
+    assert!(start.elapsed() < Duration::from_secs(10), "{:?}", start.elapsed());
 }
 
 #[test]

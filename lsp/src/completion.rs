@@ -1,5 +1,7 @@
 //! What may be written at the cursor: words of the language, keywords, programs, names.
 
+use std::collections::HashSet;
+
 use kirk_compiler::{Span, Symbol, SymbolKind};
 
 use crate::analysis::Analysis;
@@ -25,7 +27,7 @@ pub struct Completion {
 }
 
 /// What may be written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CompletionKind {
     /// A word of the language.
     Word,
@@ -70,7 +72,7 @@ enum Wanted {
 pub fn completion(analysis: &Analysis, offset: u32) -> Vec<Completion> {
     let text = analysis.text();
     let Some(cursor) = cursor(text, offset) else { return Vec::new() };
-    let mut offer = Offer { analysis, cursor: &cursor, offset, found: Vec::new() };
+    let mut offer = Offer { analysis, cursor: &cursor, offset, found: Vec::new(), known: HashSet::new() };
     for wanted in wanted(&cursor) {
         offer.add(wanted);
     }
@@ -169,6 +171,8 @@ struct Offer<'a> {
     cursor: &'a Cursor<'a>,
     offset: u32,
     found: Vec<Completion>,
+    /// What was found of each kind.
+    known: HashSet<(String, CompletionKind)>,
 }
 
 impl Offer<'_> {
@@ -333,7 +337,7 @@ impl Offer<'_> {
     }
 
     fn push(&mut self, label: &str, kind: CompletionKind, detail: &str, about: &str, snippet: String) {
-        if self.found.iter().any(|known| known.label == label && known.kind == kind) {
+        if !self.known.insert((label.to_string(), kind)) {
             return;
         }
         let (label, detail, about) = (label.to_string(), detail.to_string(), about.to_string());

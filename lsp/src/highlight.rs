@@ -65,11 +65,10 @@ pub fn highlight(analysis: &Analysis) -> Vec<Highlight> {
         let span = Span::new(0, token.start, token.end);
         let first = std::mem::replace(&mut after_open, token.kind == Kind::Open);
         let written = &text[token.start..token.end];
-        while names.next_if(|(place, _)| place.start < span.start).is_some() {}
-        let named = names.peek().filter(|(place, _)| *place == span).map(|(_, symbol)| *symbol);
-        if let Some(symbol) = named {
-            let definition = symbol.places.iter().any(|place| place.span == span && place.definition);
-            found.push(Highlight { span: bare(analysis, span), kind: kind_of(symbol.kind), definition });
+        while names.next_if(|(place, _)| place.span.start < span.start).is_some() {}
+        if let Some((place, symbol)) = names.next_if(|(place, _)| place.span == span) {
+            let (kind, definition) = (kind_of(symbol.kind), place.definition);
+            found.push(Highlight { span: bare(analysis, span), kind, definition });
             continue;
         }
         let kind = match token.kind {

@@ -42,6 +42,21 @@ impl Encoding {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lines {
     starts: Vec<u32>,
+    /// How many 16-bit code units come before each block of bytes: a line may be as long as the whole text, and its columns
+    /// must not be counted from its beginning each time.
+    units: Vec<u32>,
+}
+
+/// The number of bytes in a block.
+const BLOCK: usize = 512;
+
+/// How many 16-bit code units begin with a byte of UTF-8: two for a character of four bytes, none inside of a character.
+fn units(byte: u8) -> u32 {
+    match byte {
+        0x80..=0xBF => 0,
+        0xF0.. => 2,
+        _ => 1,
+    }
 }
 
 impl Lines {
@@ -53,14 +68,34 @@ impl Lines {
             b'\r' if bytes.get(at + 1) != Some(&b'\n') => Some(at as u32 + 1),
             _ => None,
         };
-        Lines { starts: std::iter::once(0).chain(bytes.iter().enumerate().filter_map(ends)).collect() }
+        let mut before = 0;
+        let block = |block: &[u8]| {
+            let here = before;
+            before += block.iter().map(|byte| units(*byte)).sum::<u32>();
+            here
+        };
+        Lines {
+            starts: std::iter::once(0).chain(bytes.iter().enumerate().filter_map(ends)).collect(),
+            units: bytes.chunks(BLOCK).map(block).collect(),
+        }
     }
 
     /// The position of a byte offset, which is on the boundary of a character.
     pub fn position(&self, text: &str, offset: u32, encoding: Encoding) -> Position {
         let line = self.line_of(offset);
-        let before = text.get(self.starts[line] as usize..(offset as usize).min(text.len())).unwrap_or("");
-        Position { line: line as u32, character: encoding.length(before) }
+        let (start, end) = (self.starts[line] as usize, (offset as usize).min(text.len()));
+        let character = match encoding {
+            Encoding::Utf8 => (end - start) as u32,
+            Encoding::Utf16 => self.units_before(text, end) - self.units_before(text, start),
+        };
+        Position { line: line as u32, character }
+    }
+
+    /// How many 16-bit code units come before a byte of the text.
+    fn units_before(&self, text: &str, offset: usize) -> u32 {
+        let block = (offset / BLOCK).min(self.units.len().saturating_sub(1));
+        let rest = &text.as_bytes()[block * BLOCK..offset];
+        self.units.get(block).copied().unwrap_or(0) + rest.iter().map(|byte| units(*byte)).sum::<u32>()
     }
 
     /// The byte offset of a position: the end of the line if it lies beyond, the end of the text if there is no such line,
@@ -125,6 +160,19 @@ mod tests {
         assert_eq!(lines.offset(text, at(0, 99), Encoding::Utf16), 2);
         assert_eq!(lines.offset(text, at(99, 0), Encoding::Utf16), text.len());
         assert_eq!(lines.offset(text, at(1, 2), Encoding::Utf16), 6, "inside a pair is before it");
+    }
+
+    #[test]
+    fn the_columns_of_a_long_line_are_those_counted_from_its_beginning() {
+        let text = format!("x\n{}\r\n{}", "ab ö€𝄞".repeat(200), "𝄞y".repeat(300));
+        let lines = Lines::new(&text);
+        for (offset, _) in text.char_indices().chain([(text.len(), ' ')]) {
+            let start = text[..offset].rfind('\n').map_or(0, |end| end + 1);
+            for encoding in [Encoding::Utf8, Encoding::Utf16] {
+                let position = lines.position(&text, offset as u32, encoding);
+                assert_eq!(position.character, encoding.length(&text[start..offset]), "{offset}");
+            }
+        }
     }
 
     #[test]

@@ -109,7 +109,7 @@ fn difference(before: &Symbols, after: &Symbols) -> Option<Place> {
             let next = seen.len();
             *seen.entry(symbol).or_insert(next)
         };
-        symbols.places().map(|(span, symbol)| (span, number(symbol))).collect::<Vec<(Span, usize)>>()
+        symbols.places().map(|(place, symbol)| (place.span, number(symbol))).collect::<Vec<(Span, usize)>>()
     };
     let (before, after) = (numbered(before), numbered(after));
     let place = |span: Span| Place { span, definition: false };

@@ -63,24 +63,24 @@ pub struct Symbols {
     /// In no particular order but a stable one.
     pub symbols: Vec<Symbol>,
     /// All places with the number of the symbol, sorted.
-    places: Vec<(Span, u32)>,
+    places: Vec<(Place, u32)>,
 }
 
 impl Symbols {
     /// The symbol whose name stands at a byte of a source, or ends there, and that place.
     pub fn at(&self, source: u32, offset: u32) -> Option<(&Symbol, Place)> {
-        let after = self.places.partition_point(|(span, _)| (span.source, span.start) <= (source, offset));
-        let (span, symbol) = self.places[..after].last().copied()?;
-        if span.source != source || offset > span.end {
+        let is_before = |span: Span| (span.source, span.start) <= (source, offset);
+        let after = self.places.partition_point(|(place, _)| is_before(place.span));
+        let (place, symbol) = self.places[..after].last().copied()?;
+        if place.span.source != source || offset > place.span.end {
             return None;
         }
-        let symbol = &self.symbols[symbol as usize];
-        symbol.places.iter().find(|place| place.span == span).map(|place| (symbol, *place))
+        Some((&self.symbols[symbol as usize], place))
     }
 
     /// Every place with its symbol, in source order.
-    pub fn places(&self) -> impl Iterator<Item = (Span, &Symbol)> {
-        self.places.iter().map(|(span, symbol)| (*span, &self.symbols[*symbol as usize]))
+    pub fn places(&self) -> impl Iterator<Item = (Place, &Symbol)> {
+        self.places.iter().map(|(place, symbol)| (*place, &self.symbols[*symbol as usize]))
     }
 }
 
@@ -113,10 +113,10 @@ pub fn symbols(program: &Program) -> Symbols {
     for (number, symbol) in symbols.iter_mut().enumerate() {
         symbol.places.sort();
         symbol.places.dedup_by_key(|place| place.span);
-        places.extend(symbol.places.iter().map(|place| (place.span, number as u32)));
+        places.extend(symbol.places.iter().map(|place| (*place, number as u32)));
     }
     places.sort_unstable();
-    places.dedup_by_key(|(span, _)| *span);
+    places.dedup_by_key(|(place, _)| place.span);
     Symbols { symbols, places }
 }
 

@@ -7,7 +7,7 @@ use std::time::Duration as Real;
 
 use kirk_network::{Duration, Network, Time};
 use kirk_runtime::journal::{Line, Record, Start};
-use kirk_runtime::{Execution, Executive, Handover, Patience, Plan, Settings, Setup, Strategy, replay};
+use kirk_runtime::{Execution, Executive, Handover, Patience, Plan, Settings, Setup, Strategy, recover};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use serde_json::value::RawValue;
@@ -151,7 +151,7 @@ pub fn resume(
         note(format!("the last record was torn, {} bytes of it; it is left out", journal.torn));
     }
     let of_file = |bad| format!("`{}`, {bad}", path.display());
-    let replayed = replay(&journal, |_, _, _| {}).map_err(of_file)?;
+    let replayed = recover(&journal).map_err(of_file)?;
     let mut executive = replayed.executive;
     if executive.is_over() {
         return Ok(Resumption::Over(Box::new(executive.execution(replayed.at, false))));

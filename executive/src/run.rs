@@ -10,7 +10,7 @@ use std::time::Duration as Real;
 use kirk_network::json::{Seconds, seconds};
 use kirk_network::{Duration, EventId, Time};
 use kirk_runtime::journal::{Line, Record};
-use kirk_runtime::{Answer, Execution, Executive, How, Output, Sending};
+use kirk_runtime::{Answer, Execution, Executive, How, Output, Replanned, Sending};
 
 use crate::clock::Clock;
 use crate::desk::{AnswerNews, Desk, Ignored, Message, Reply};
@@ -185,11 +185,16 @@ impl Loop {
             }
             Message::Rebuilt { from, rebuilt } => {
                 let before = self.executive.version();
-                let current = self.executive.handle_rebuilt(now, rebuilt);
-                if current {
-                    self.record(now, Record::Rebuilt { from: at(from) });
-                } else if self.executive.version() != before {
-                    self.record(now, Record::Timeout {});
+                let from = at(from);
+                match self.executive.handle_rebuilt(now, rebuilt) {
+                    Replanned::Followed(known) => {
+                        self.record(now, Record::Rebuilt { from, known: Some(known) });
+                    }
+                    Replanned::NoPlan => self.record(now, Record::Rebuilt { from, known: None }),
+                    Replanned::TooLate if self.executive.version() != before => {
+                        self.record(now, Record::Timeout {});
+                    }
+                    Replanned::TooLate => {}
                 }
                 self.perform();
             }

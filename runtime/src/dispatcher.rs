@@ -22,10 +22,12 @@
 mod replan;
 
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 use kirk_network::reduce::Reduction;
 use kirk_network::stnu::{Link, Rows};
 use kirk_network::{Dispatchable, Duration, EventId, Network, Time};
+pub use replan::Adoption;
 
 use crate::agenda::Agenda;
 use crate::execution::How;
@@ -114,7 +116,7 @@ pub struct Missed {
 /// The state of an execution.
 #[derive(Clone, Debug)]
 pub struct Dispatcher {
-    plan: Plan,
+    network: Arc<Network>,
     settings: Settings,
     /// For each event: is it to be confirmed?
     confirmed: Vec<bool>,
@@ -135,6 +137,8 @@ pub struct Dispatcher {
     /// News came that is not planned with yet, and a plan with it has been asked for.
     stale: bool,
     asked: bool,
+    /// News came that the model rules out: nothing is done before it is known whether there is a plan with it.
+    broken: bool,
     /// Changes whenever anything happens.
     version: u64,
     missed: Option<Missed>,
@@ -143,30 +147,8 @@ pub struct Dispatcher {
 impl Dispatcher {
     /// Starts an execution: the origin is dispatched, and executed, at time 0.
     pub fn new(plan: Plan, settings: Settings) -> Dispatcher {
-        let mut confirmed = vec![false; plan.network().events().len()];
-        for event in &settings.confirmed {
-            confirmed[event.index()] = true;
-        }
-        let mut dispatcher = Dispatcher {
-            agenda: agenda(&plan.reduction, &plan.net, &confirmed, settings.lead),
-            settings,
-            confirmed,
-            reduction: plan.reduction.clone(),
-            active: Vec::new(),
-            knowledge: Knowledge::new(plan.network()),
-            unplaced: Vec::new(),
-            placed_at: Rows::new(0, std::iter::empty()),
-            measured: Measured::new(plan.network()),
-            now: 0,
-            in_flight: Vec::new(),
-            dispatches: VecDeque::new(),
-            fixed: VecDeque::new(),
-            stale: false,
-            asked: false,
-            version: 0,
-            missed: None,
-            plan,
-        };
+        let knowledge = Knowledge::new(plan.network());
+        let mut dispatcher = Dispatcher::following(plan, settings, knowledge);
         let origin = dispatcher.network().origin();
         dispatcher.dispatches.push_back(Dispatch { event: origin, time: Time::ZERO });
         dispatcher.fix(origin, 0, How::Dispatched);
@@ -174,9 +156,39 @@ impl Dispatcher {
         dispatcher
     }
 
+    /// Nothing of the plan is executed yet, not even its origin.
+    fn following(plan: Plan, settings: Settings, knowledge: Knowledge) -> Dispatcher {
+        let Plan { network, reduction, net } = plan;
+        let mut confirmed = vec![false; network.events().len()];
+        for event in &settings.confirmed {
+            confirmed[event.index()] = true;
+        }
+        Dispatcher {
+            agenda: agenda(&reduction, &net, &confirmed, settings.lead),
+            settings,
+            confirmed,
+            reduction,
+            active: Vec::new(),
+            knowledge,
+            unplaced: Vec::new(),
+            placed_at: Rows::new(0, std::iter::empty()),
+            measured: Measured::new(&network),
+            now: 0,
+            in_flight: Vec::new(),
+            dispatches: VecDeque::new(),
+            fixed: VecDeque::new(),
+            stale: false,
+            asked: false,
+            broken: false,
+            version: 0,
+            missed: None,
+            network,
+        }
+    }
+
     /// The network that is executed.
     pub fn network(&self) -> &Network {
-        self.plan.network()
+        &self.network
     }
 
     /// What is known of an event.
@@ -231,26 +243,23 @@ impl Dispatcher {
     }
 
     /// Takes news, arrived at a time, that the model rules out: the event happened when its delay says, whatever its link
-    /// says. Returns whether there is still a plan for all the rest. An event whose activation has not happened is not
-    /// taken. Nothing may be in flight.
-    pub fn handle_impossible(&mut self, arrived: Time, event: EventId) -> bool {
+    /// says. It has to be planned anew with that, and until there is an answer nothing is done. An event whose activation
+    /// has not happened is not taken. Nothing may be in flight.
+    pub fn handle_impossible(&mut self, arrived: Time, event: EventId) {
         let arrived = arrived.as_micros();
         self.now = self.now.max(arrived);
-        let (Some(link), Some(_)) = (self.network().link_of(event), self.happened(event)) else {
-            return false;
-        };
-        let link = self.network().contingents()[link];
+        let (Some(link), Some(_)) = (self.network.link_of(event), self.happened(event)) else { return };
+        let evidence = heard_now(&self.network.contingents()[link], arrived);
         self.version += 1;
         self.knowledge.hear(event, arrived);
-        self.knowledge.overrule(event, heard_now(&link, arrived));
-        let rebuilt = self.rebuild(self.now).run();
-        self.adopt(rebuilt)
+        self.knowledge.overrule(event, evidence);
+        (self.stale, self.broken) = (true, true);
     }
 
     /// Does everything that is due by now: releases buffered news, imagines missing news, dispatches events.
     pub fn handle_timeout(&mut self, now: Time) {
         self.now = self.now.max(now.as_micros());
-        while self.missed.is_none() {
+        while self.missed.is_none() && !self.broken {
             let link = self.next_link().filter(|&(time, ..)| time <= self.now);
             let early = self.next_early().filter(|&(time, _)| time <= self.now);
             let event = self.agenda.next().filter(|&(action, _)| action <= self.now).map(|(_, node)| {
@@ -363,7 +372,7 @@ impl Dispatcher {
 
     /// True when nothing is left to be done, or nothing can be.
     pub fn is_over(&mut self) -> bool {
-        self.missed.is_some() || self.in_flight.is_empty() && self.poll_timeout().is_none()
+        self.missed.is_some() || !self.broken && self.in_flight.is_empty() && self.poll_timeout().is_none()
     }
 
     /// The next event to be dispatched; call until there is none.
@@ -372,9 +381,9 @@ impl Dispatcher {
     }
 
     /// When there is something to do next if nothing is heard; `None` when the execution is over or all depends on what is in
-    /// flight.
+    /// flight, or on a new plan.
     pub fn poll_timeout(&mut self) -> Option<Time> {
-        if self.missed.is_some() {
+        if self.missed.is_some() || self.broken {
             return None;
         }
         let link = self.next_link().map(|(time, ..)| time);
@@ -390,9 +399,9 @@ impl Dispatcher {
     }
 
     /// What will be done next if nothing is heard: when, with which event, and how. `None` when nothing is left or all
-    /// depends on what is in flight.
+    /// depends on what is in flight, or on a new plan.
     pub fn upcoming(&mut self) -> Option<(Time, EventId, How)> {
-        if self.missed.is_some() {
+        if self.missed.is_some() || self.broken {
             return None;
         }
         let link = self.next_link().map(|(time, node, how)| (time, self.acted_on(node), how));

@@ -5,6 +5,7 @@
 //! happens to it comes in through a `handle_*` method with its time, so a list of those calls is the whole execution: the
 //! [`journal`](crate::journal) is that list.
 
+mod checkpoints;
 mod orders;
 
 use std::collections::VecDeque;
@@ -12,7 +13,8 @@ use std::collections::VecDeque;
 use kirk_network::{Duration, EventId, Network, Time};
 
 use crate::activity::Handover;
-use crate::dispatcher::{Dispatcher, Reception, Settings};
+use crate::checkpoint::Checkpoint;
+use crate::dispatcher::{Adoption, Dispatcher, Reception, Settings};
 use crate::execution::{Execution, Failure, How, Outcome, Row, at};
 use crate::order::{Order, Patience, State};
 use crate::plan::Plan;
@@ -40,10 +42,33 @@ pub struct Executive {
     held: Vec<(Time, EventId)>,
     /// Events that were imagined, and when their news was to come at the latest.
     awaited: Vec<(Time, EventId)>,
+    /// News the model rules out, while it is not known whether there is a plan with it.
+    broken: Vec<Broken>,
     outputs: VecDeque<Output>,
     failure: Option<Failure>,
     over: bool,
     changes: u64,
+}
+
+/// News the model rules out.
+#[derive(Clone, Debug)]
+struct Broken {
+    event: EventId,
+    arrived: Time,
+    /// What is wrong with it, in words.
+    said: String,
+}
+
+/// What became of a new plan.
+#[derive(Clone, Debug)]
+pub enum Replanned {
+    /// It is followed from now on. That belongs in the journal with what was known, so that nobody has to make the plans before
+    /// it once more.
+    Followed(Box<Checkpoint>),
+    /// There is none, which belongs in the journal, too.
+    NoPlan,
+    /// It came too late to be of use.
+    TooLate,
 }
 
 /// What is to be done, or told.
@@ -115,14 +140,28 @@ pub struct Setup {
     pub patience: Patience,
 }
 
+impl Setup {
+    /// The settings of the dispatcher: what is handed over is to be confirmed.
+    fn settings_for(&self, network: &Network) -> Settings {
+        let ours = |event: EventId| network.link_of(event).is_none() && event != network.origin();
+        let confirmed = self.handovers.iter().map(|handover| handover.event).filter(|&event| ours(event));
+        Settings { confirmed: confirmed.collect(), ..self.settings.clone() }
+    }
+}
+
 impl Executive {
     /// Starts a mission: it is time 0.
     pub fn new(plan: Plan, setup: Setup) -> Executive {
-        let Setup { program, run, mut settings, handovers, patience } = setup;
-        let network = plan.network();
-        let ours = |event: EventId| network.link_of(event).is_none() && event != network.origin();
-        settings.confirmed =
-            handovers.iter().map(|handover| handover.event).filter(|&event| ours(event)).collect();
+        let settings = setup.settings_for(plan.network());
+        let mut executive = Executive::around(Dispatcher::new(plan, settings), setup);
+        executive.settle(Time::ZERO);
+        executive
+    }
+
+    /// Nothing is in the hands of a driver.
+    fn around(dispatcher: Dispatcher, setup: Setup) -> Executive {
+        let Setup { program, run, settings, handovers, patience } = setup;
+        let network = dispatcher.network();
         let unannounced = handovers.iter().map(|handover| handover.event);
         let mut unannounced: Vec<EventId> =
             unannounced.filter(|&event| network.link_of(event).is_some()).collect();
@@ -133,10 +172,10 @@ impl Executive {
             *start = if *end == 0 { index as u32 } else { *start };
             *end = index as u32 + 1;
         }
-        let mut executive = Executive {
+        Executive {
             lateness: settings.lateness,
             slack: settings.lead.checked_add(settings.lateness).unwrap_or(settings.lead),
-            dispatcher: Dispatcher::new(plan, settings),
+            dispatcher,
             program,
             run,
             patience,
@@ -146,13 +185,12 @@ impl Executive {
             unannounced,
             held: Vec::new(),
             awaited: Vec::new(),
+            broken: Vec::new(),
             outputs: VecDeque::new(),
             failure: None,
             over: false,
             changes: 0,
-        };
-        executive.settle(Time::ZERO);
-        executive
+        }
     }
 
     /// The network that is executed.
@@ -282,11 +320,39 @@ impl Executive {
         if self.over { None } else { self.dispatcher.poll_rebuild(now) }
     }
 
-    /// Goes on with a new plan. Returns false if it came too late to be of use.
-    pub fn handle_rebuilt(&mut self, now: Time, rebuilt: Rebuilt) -> bool {
-        let current = !self.over && self.dispatcher.handle_rebuilt(rebuilt);
+    /// Goes on with a new plan, or says that it is of no use.
+    pub fn handle_rebuilt(&mut self, now: Time, rebuilt: Rebuilt) -> Replanned {
+        if self.over {
+            return Replanned::TooLate;
+        }
+        let current = self.dispatcher.is_current(&rebuilt);
+        // What is known before anything follows from the plan.
+        let known = (current && rebuilt.is_plan()).then(|| Box::new(self.checkpoint()));
+        let replanned = match (self.dispatcher.handle_rebuilt(rebuilt), known) {
+            (Adoption::Followed, Some(known)) => {
+                self.mend();
+                Replanned::Followed(known)
+            }
+            (Adoption::TooLate, _) => Replanned::TooLate,
+            (Adoption::NoPlan | Adoption::Followed, _) => {
+                if let Some(Broken { event, arrived, said }) = self.broken.pop() {
+                    let detail = format!("{said}, and the rest cannot be guaranteed any more");
+                    self.fail(event, arrived, "broken-model", detail);
+                }
+                Replanned::NoPlan
+            }
+        };
         self.handle_timeout(now);
-        current
+        replanned
+    }
+
+    /// There is a plan with all the news, whatever the model says.
+    fn mend(&mut self) {
+        for Broken { said, .. } in std::mem::take(&mut self.broken) {
+            self.outputs.push_back(Output::Warning(format!(
+                "{said}; the rest can still be guaranteed, the mission goes on"
+            )));
+        }
     }
 
     /// What is to be done or told next.
@@ -387,18 +453,8 @@ impl Executive {
                     _ => format!("too early: it was to come from {earliest} s on"),
                 };
                 let said = format!("the model is broken: news of `{name}` at {arrived} s is {window}");
-                if self.dispatcher.handle_impossible(arrived, event) {
-                    self.outputs.push_back(Output::Warning(format!(
-                        "{said}; the rest can still be guaranteed, the mission goes on"
-                    )));
-                } else {
-                    self.fail(
-                        event,
-                        arrived,
-                        "broken-model",
-                        format!("{said}, and the rest cannot be guaranteed any more"),
-                    );
-                }
+                self.dispatcher.handle_impossible(arrived, event);
+                self.broken.push(Broken { event, arrived, said });
                 Answer::Accepted
             }
         }

@@ -7,23 +7,28 @@
 //! Some records are what happened to the executive, in the order it happened; they determine everything. The others are
 //! what came of it, for people, for checking a repetition, and for knowing what had left when the journal ends.
 
-use std::fmt;
+mod text;
+
+use std::collections::{HashMap, HashSet};
 
 use kirk_network::json::{self, Seconds, seconds};
 use kirk_network::model::Name;
-use kirk_network::{Duration, Event, Network, Time};
+use kirk_network::{Duration, Event, EventId, Network, Time};
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 
 use crate::activity::Handover;
+use crate::checkpoint::Checkpoint;
 use crate::dispatcher::{Settings, Strategy};
 use crate::execution::Execution;
 use crate::executive::{Executive, Setup};
 use crate::order::Patience;
 use crate::plan::{NoPlan, Plan};
+use crate::replay::names;
+pub use text::{BadJournal, Journal, is_journal, read, write};
 
 /// The `format` of the journals written and read here.
-pub const FORMAT: &str = "kirk-journal/1";
+pub const FORMAT: &str = "kirk-journal/2";
 
 /// One line.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -66,10 +71,12 @@ pub enum Record {
         #[serde(default, skip_serializing_if = "std::ops::Not::not")]
         doubt: bool,
     },
-    /// A new plan was ready.
+    /// The answer was there to how to go on with what is known.
     Rebuilt {
         /// The time from which it plans.
         from: Seconds,
+        /// Came of it: what was known by then that the last such record did not know; nothing if there is no plan.
+        known: Option<Box<Checkpoint>>,
     },
     /// The executive was away and is back.
     Resumed {
@@ -172,123 +179,6 @@ pub struct Clocks {
     pub calendar: i64,
 }
 
-/// A journal that has been read.
-#[derive(Clone, Debug)]
-pub struct Journal {
-    /// What it says about the mission.
-    pub start: Start,
-    /// All lines after the first.
-    pub lines: Vec<Line>,
-    /// How many bytes of the file are right; what follows was torn.
-    pub length: usize,
-    /// How many bytes are torn.
-    pub torn: usize,
-    /// The checksum of the last line, for the next one.
-    pub checksum: u32,
-}
-
-/// What is wrong with a journal.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct BadJournal {
-    /// The line, from 1.
-    pub line: usize,
-    /// What is wrong there.
-    pub message: String,
-}
-
-impl fmt::Display for BadJournal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "line {}: {}", self.line, self.message)
-    }
-}
-
-impl std::error::Error for BadJournal {}
-
-/// Writes a line to follow one with a checksum (0 for the first), and returns it with its own checksum.
-pub fn write(line: &Line, before: u32) -> (String, u32) {
-    let text = serde_json::to_string(line)
-        .unwrap_or_else(|error| unreachable!("a line has only strings and numbers: {error}"));
-    let checksum = checksum(before, text.as_bytes());
-    (format!("{checksum:08x} {text}\n"), checksum)
-}
-
-/// Reads a journal.
-///
-/// # Errors
-/// A line that is damaged, unless it is the last one: that was torn, and is left out.
-pub fn read(bytes: &[u8]) -> Result<Journal, BadJournal> {
-    let mut lines = Vec::new();
-    let mut before = 0;
-    let mut at = 0;
-    while at < bytes.len() {
-        let end = bytes[at..].iter().position(|&byte| byte == b'\n').map(|length| at + length);
-        let line = end.ok_or("it has no end".to_string()).and_then(|end| read_line(&bytes[at..end], before));
-        match (line, end) {
-            (Ok((line, checksum)), Some(end)) => {
-                lines.push(line);
-                before = checksum;
-                at = end + 1;
-            }
-            // It was being written when the machine or the process died.
-            (Err(_), _) if !lines.is_empty() && is_torn(&bytes[at..]) => break,
-            (Err(message), _) => return Err(BadJournal { line: lines.len() + 1, message }),
-            (Ok(_), None) => unreachable!("a line is read up to its end"),
-        }
-    }
-    let mut lines = lines.into_iter();
-    let start = match lines.next().map(|line| line.record) {
-        Some(Record::Start(start)) if start.format == FORMAT => *start,
-        Some(Record::Start(start)) => {
-            let message = format!("the format is `{}`; this kirk reads `{FORMAT}`", start.format);
-            return Err(BadJournal { line: 1, message });
-        }
-        Some(_) => return Err(BadJournal { line: 1, message: "it does not say what is executed".into() }),
-        None => return Err(BadJournal { line: 1, message: "there is nothing in it".into() }),
-    };
-    Ok(Journal { start, lines: lines.collect(), length: at, torn: bytes.len() - at, checksum: before })
-}
-
-/// True if a file looks like a journal.
-pub fn is_journal(bytes: &[u8]) -> bool {
-    bytes.len() > 9
-        && bytes[8] == b' '
-        && bytes[9] == b'{'
-        && bytes[..8].iter().all(|byte| byte.is_ascii_hexdigit())
-}
-
-/// True if these last bytes of a file are the beginning of a line, or partly never reached the disk.
-fn is_torn(bytes: &[u8]) -> bool {
-    let (checksum, json) = bytes.split_at(bytes.len().min(9));
-    let begun = || {
-        let whole = serde_json::from_slice::<serde_json::Value>(json);
-        checksum.iter().all(|byte| byte.is_ascii_hexdigit() || *byte == b' ')
-            && whole.map_or_else(|error| error.is_eof(), |_| true)
-    };
-    !bytes.contains(&b'\n') && (bytes.contains(&0) || begun())
-}
-
-fn read_line(bytes: &[u8], before: u32) -> Result<(Line, u32), String> {
-    if !is_journal(bytes) {
-        return Err("a line is a checksum of 8 digits, a blank and a JSON object; this is not".to_string());
-    }
-    let written = std::str::from_utf8(&bytes[..8]).ok().and_then(|text| u32::from_str_radix(text, 16).ok());
-    let found = checksum(before, &bytes[9..]);
-    if written != Some(found) {
-        return Err(format!(
-            "it is damaged, or a line before it is missing (its checksum is not {found:08x})"
-        ));
-    }
-    let line = serde_json::from_slice(&bytes[9..]).map_err(|error| error.to_string())?;
-    Ok((line, found))
-}
-
-fn checksum(before: u32, text: &[u8]) -> u32 {
-    let mut hasher = crc32fast::Hasher::new();
-    hasher.update(&before.to_be_bytes());
-    hasher.update(text);
-    hasher.finalize()
-}
-
 impl Start {
     /// What is to be executed: a network as written, and a setup whose handovers are of its merged form.
     pub fn new(
@@ -327,15 +217,41 @@ impl Start {
     /// A sentence that says what is wrong with it.
     pub fn network(&self) -> Result<Network, String> {
         let network = json::read(self.network.get()).map_err(|problems| problems[0].message.clone())?;
+        let internal: HashSet<&str> = self.internal.iter().map(String::as_str).collect();
         let flagged = |event: &Event| {
-            let internal = |text: &str| self.internal.iter().any(|name| name == text);
-            let name = |name: &Name| Name { internal: internal(&name.text), ..name.clone() };
+            let name = |name: &Name| Name { internal: internal.contains(name.text.as_str()), ..name.clone() };
             Event { names: event.names.iter().map(name).collect() }
         };
         let events = network.events().iter().map(flagged).collect();
         let (requirements, contingents) = (network.requirements().to_vec(), network.contingents().to_vec());
         Network::new(network.name().to_string(), network.origin(), events, requirements, contingents)
             .map_err(|errors| errors[0].to_string())
+    }
+
+    /// How the executive of a merged network is set up.
+    ///
+    /// # Errors
+    /// A sentence: it is another network.
+    pub fn setup(&self, network: &Network) -> Result<Setup, String> {
+        let events: HashMap<&str, EventId> = names(network).collect();
+        let handover = |(name, companion): &(String, Option<String>)| {
+            let event = *events.get(name.as_str()).ok_or(format!("there is no event `{name}`"))?;
+            Ok(Handover { event, name: name.clone(), companion: companion.clone() })
+        };
+        let handovers = self.handovers.iter().map(handover).collect::<Result<_, String>>()?;
+        let settings = Settings {
+            strategy: if self.optimistic { Strategy::Optimistic } else { Strategy::Buffer },
+            lead: self.lead.0,
+            lateness: self.lateness.0,
+            ..Settings::default()
+        };
+        Ok(Setup {
+            program: self.program.clone(),
+            run: self.run.clone(),
+            settings,
+            handovers,
+            patience: Patience { first: self.patience.0.0, most: self.patience.1.0 },
+        })
     }
 
     /// The executive at time 0.
@@ -348,24 +264,7 @@ impl Start {
             Err(NoPlan::Uncontrollable(_)) => return Err("its network is not controllable".to_string()),
             Err(NoPlan::TooLarge) => return Err("its numbers are too large to compute with".to_string()),
         };
-        let handover = |(name, companion): &(String, Option<String>)| {
-            let event = plan.network().find(name).ok_or(format!("there is no event `{name}`"))?;
-            Ok(Handover { event, name: name.clone(), companion: companion.clone() })
-        };
-        let handovers = self.handovers.iter().map(handover).collect::<Result<_, String>>()?;
-        let settings = Settings {
-            strategy: if self.optimistic { Strategy::Optimistic } else { Strategy::Buffer },
-            lead: self.lead.0,
-            lateness: self.lateness.0,
-            ..Settings::default()
-        };
-        let setup = Setup {
-            program: self.program.clone(),
-            run: self.run.clone(),
-            settings,
-            handovers,
-            patience: Patience { first: self.patience.0.0, most: self.patience.1.0 },
-        };
+        let setup = self.setup(plan.network())?;
         Ok(Executive::new(plan, setup))
     }
 }
@@ -422,61 +321,5 @@ mod tests {
         assert_eq!(booted_and_set_back.since(&start), None);
         let no_boot = clocks(None, 3_000, 51_000);
         assert_eq!(no_boot.since(&clocks(None, 1_000, 50_000)), Some(Duration::from_micros(1_000)));
-    }
-
-    #[test]
-    fn every_damage_is_noticed_and_only_a_torn_end_is_forgiven() {
-        let line = |n: i64| Line::new(Time::from_micros(n), Record::Warning { text: format!("line {n}") });
-        let network = json::read(r#"{"format": "kirk-network/1", "origin": "z", "events": ["z"]}"#).unwrap();
-        let setup = Setup {
-            program: "p".into(),
-            run: "r".into(),
-            settings: Settings::default(),
-            handovers: Vec::new(),
-            patience: Patience { first: Duration::ZERO, most: Duration::ZERO },
-        };
-        let shell = RawValue::from_string("null".into()).unwrap();
-        let start = Start::new(&network, &setup, 1.0, clocks(None, 0, 0), shell, "0");
-        let mut text = String::new();
-        let mut before = 0;
-        let first = Line::new(Time::ZERO, Record::Start(Box::new(start)));
-        for line in [first, line(1), line(2), line(3)] {
-            let (written, checksum) = write(&line, before);
-            text.push_str(&written);
-            before = checksum;
-        }
-        let whole = text.as_bytes();
-        assert_eq!(read(whole).unwrap().lines.len(), 3);
-        let starts: Vec<usize> = std::iter::once(0)
-            .chain((0..whole.len()).filter(|&at| whole[at] == b'\n').map(|at| at + 1))
-            .collect();
-        // Cut anywhere: what is whole is kept, and without a first line there is no journal.
-        for cut in 0..whole.len() {
-            let kept = starts.iter().filter(|&&at| at > 0 && at <= cut).count();
-            match read(&whole[..cut]) {
-                Ok(journal) => {
-                    assert_eq!((journal.lines.len() + 1, journal.length), (kept, starts[kept]), "{cut}")
-                }
-                Err(bad) => assert!(kept == 0 && bad.line == 1, "{cut}: {bad}"),
-            }
-        }
-        // Changed anywhere: an error, in the line that is changed.
-        for at in 0..whole.len() {
-            let mut changed = whole.to_vec();
-            changed[at] ^= 1;
-            let line = starts.iter().filter(|&&start| start <= at).count();
-            let found = read(&changed).map(|journal| journal.torn).map_err(|bad| bad.line);
-            assert_eq!(found, Err(line), "byte {at}");
-        }
-        // What never reached the disk reads as zeros.
-        let mut zeros = whole[..starts[3] + 20].to_vec();
-        zeros.resize(whole.len(), 0);
-        assert_eq!(read(&zeros).unwrap().lines.len(), 2);
-        // A line that is missing, doubled, or in another place.
-        let part = |n: usize| &text[starts[n]..starts[n + 1]];
-        for order in [vec![0, 2, 3], vec![0, 1, 1, 2, 3], vec![0, 2, 1, 3]] {
-            let moved: String = order.iter().map(|&n| part(n)).collect();
-            assert!(read(moved.as_bytes()).is_err(), "{order:?}");
-        }
     }
 }

@@ -19,9 +19,9 @@ pub struct Known {
     /// It is known to have happened: heard, imagined, or implied by news of what follows it.
     pub(crate) settled: bool,
     /// An interval in which it happened, from its own news or from the lack of it.
-    evidence: Option<Interval>,
+    pub(crate) evidence: Option<Interval>,
     /// The news contradicts the model: the evidence stands against the link.
-    overruled: bool,
+    pub(crate) overruled: bool,
 }
 
 /// From the earliest to the latest, in microseconds after the origin.
@@ -39,6 +39,8 @@ pub(crate) struct Knowledge {
     trees: Vec<Vec<EventId>>,
     /// The number of an event in its tree.
     number: Vec<u32>,
+    /// The events of which something has become known since that was last asked.
+    touched: Vec<EventId>,
 }
 
 impl Knowledge {
@@ -64,11 +66,29 @@ impl Knowledge {
                 at += 1;
             }
         }
-        Knowledge { events: vec![Known::default(); count], fixed: 0, root, trees, number }
+        let events = vec![Known::default(); count];
+        Knowledge { events, fixed: 0, root, trees, number, touched: Vec::new() }
     }
 
     pub(crate) fn of(&self, event: EventId) -> &Known {
         &self.events[event.index()]
+    }
+
+    /// The one way to change what is known.
+    fn change(&mut self, event: EventId) -> &mut Known {
+        self.touched.push(event);
+        &mut self.events[event.index()]
+    }
+
+    /// The events of which something has become known since this was last asked.
+    pub(crate) fn take_touched(&mut self) -> Vec<EventId> {
+        std::mem::take(&mut self.touched)
+    }
+
+    /// What was known of an event is known again.
+    pub(crate) fn recall(&mut self, event: EventId, known: Known) {
+        self.fixed = self.fixed.max(known.fixed.map_or(0, |_| known.sequence + 1));
+        self.events[event.index()] = known;
     }
 
     pub(crate) fn root(&self, event: EventId) -> EventId {
@@ -82,23 +102,24 @@ impl Knowledge {
 
     /// Fixes an event; false if it is fixed already.
     pub(crate) fn fix(&mut self, event: EventId, time: i64, how: How) -> bool {
-        let known = &mut self.events[event.index()];
-        if known.fixed.is_some() {
+        if self.of(event).fixed.is_some() {
             return false;
         }
+        let sequence = self.fixed;
+        let known = self.change(event);
         known.fixed = Some((Time::from_micros(time), how));
-        known.sequence = self.fixed;
+        known.sequence = sequence;
         self.fixed += 1;
         true
     }
 
     pub(crate) fn hear(&mut self, event: EventId, now: i64) {
-        self.events[event.index()].observed = Some(Time::from_micros(now));
+        self.change(event).observed = Some(Time::from_micros(now));
     }
 
     /// The event happened in this interval, as far as its own news or silence tells.
     pub(crate) fn add_evidence(&mut self, event: EventId, (low, high): Interval) {
-        let known = &mut self.events[event.index()];
+        let known = self.change(event);
         let before = known.evidence.unwrap_or(ANYTIME);
         known.evidence = Some((before.0.max(low), before.1.min(high)));
         known.settled = true;
@@ -106,14 +127,29 @@ impl Knowledge {
 
     /// The event happened in this interval, whatever the model says.
     pub(crate) fn overrule(&mut self, event: EventId, evidence: Interval) {
-        let known = &mut self.events[event.index()];
+        let known = self.change(event);
         known.evidence = Some(evidence);
         known.settled = true;
         known.overruled = true;
     }
 
+    /// How far the execution has got, for planning what is left of it: when our events were executed, and the intervals in
+    /// which Nature's happened that are known to have.
+    pub(crate) fn progress(&mut self, network: &Network) -> Vec<Option<(Time, Time)>> {
+        self.settle_ancestors(network);
+        let happened = self.all_happened(network);
+        let known = network.event_ids().map(|event| match (network.link_of(event), self.of(event)) {
+            (None, known) => known.fixed.map(|(time, _)| (time, time)),
+            (Some(_), known) if known.settled => {
+                happened[event.index()].map(|(low, high)| (Time::from_micros(low), Time::from_micros(high)))
+            }
+            _ => None,
+        });
+        known.collect()
+    }
+
     /// What follows an event that happened has to be preceded by it: its ancestors happened too.
-    pub(crate) fn settle_ancestors(&mut self, network: &Network) {
+    fn settle_ancestors(&mut self, network: &Network) {
         for at in 0..self.events.len() as u32 {
             let mut event = EventId(at);
             while self.events[event.index()].settled
@@ -123,7 +159,7 @@ impl Knowledge {
                 if network.link_of(event).is_none() || self.events[event.index()].settled {
                     break;
                 }
-                self.events[event.index()].settled = true;
+                self.change(event).settled = true;
             }
         }
     }

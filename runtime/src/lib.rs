@@ -48,6 +48,7 @@
 
 pub mod activity;
 mod agenda;
+pub mod checkpoint;
 pub mod dispatcher;
 pub mod execution;
 pub mod executive;
@@ -64,14 +65,15 @@ pub mod simulate;
 pub mod verify;
 
 pub use activity::{Handover, Scope, handovers, original_spelling};
-pub use dispatcher::{Dispatch, Dispatcher, Missed, Reception, Settings, Strategy};
+pub use checkpoint::Checkpoint;
+pub use dispatcher::{Adoption, Dispatch, Dispatcher, Missed, Reception, Settings, Strategy};
 pub use execution::{Execution, Failure, How, Outcome, Row};
-pub use executive::{Answer, Executive, Output, Pending, Sending, Setup};
+pub use executive::{Answer, Executive, Output, Pending, Replanned, Sending, Setup};
 pub use journal::{BadJournal, Clocks, Journal};
 pub use nature::{Impossible, Temper};
 pub use order::Patience;
 pub use plan::{NoPlan, Plan};
 pub use rebuild::{Rebuild, Rebuilt};
-pub use replay::{Replay, replay};
+pub use replay::{Replay, recover, replay};
 pub use simulate::{Simulation, simulate};
 pub use verify::{Violation, verify};

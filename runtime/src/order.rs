@@ -21,6 +21,8 @@ pub(crate) struct Order {
     pub(crate) reason: String,
     /// An attempt may have succeeded without our hearing of it: then the first one counts.
     pub(crate) doubtful: bool,
+    /// A checkpoint has it as done: nothing will change any more.
+    pub(crate) kept: bool,
 }
 
 /// Where an order is.

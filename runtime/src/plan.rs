@@ -10,7 +10,7 @@ use kirk_network::{Conflict, Dispatchable, Network, Verdict, check, dispatchable
 /// What an execution needs: the merged network, how its news is used, and the dispatchable form.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    network: Arc<Network>,
+    pub(crate) network: Arc<Network>,
     pub(crate) reduction: Reduction,
     pub(crate) net: Dispatchable,
 }
@@ -46,10 +46,6 @@ impl Plan {
     /// The merged network that is executed.
     pub fn network(&self) -> &Network {
         &self.network
-    }
-
-    pub(crate) fn shared_network(&self) -> Arc<Network> {
-        Arc::clone(&self.network)
     }
 }
 

@@ -45,4 +45,15 @@ impl Rebuild {
     pub fn run(self) -> Rebuilt {
         Rebuilt { plan: rest(&self.network, &self.progress), now: self.progress.now, version: self.version }
     }
+
+    /// What is left when it is known that there is no plan.
+    pub(crate) fn without_plan(self) -> Rebuilt {
+        Rebuilt { plan: None, now: self.progress.now, version: self.version }
+    }
+}
+
+impl Rebuilt {
+    pub(crate) fn is_plan(&self) -> bool {
+        self.plan.is_some()
+    }
 }

@@ -1,10 +1,25 @@
 //! Planning anew: when news calls for it, from what is known, and how the new plan is followed.
 
-use kirk_network::{EventId, Time};
+use std::sync::Arc;
 
-use super::{Dispatcher, agenda};
+use kirk_network::{EventId, Network, Time};
+
+use super::{Dispatcher, Settings, agenda};
 use crate::execution::How;
+use crate::knowledge::Knowledge;
+use crate::plan::Plan;
 use crate::rebuild::{Rebuild, Rebuilt};
+
+/// What became of a new plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Adoption {
+    /// It is followed from now on.
+    Followed,
+    /// There is none: the old plan stands, unless it is broken.
+    NoPlan,
+    /// Something has happened since it was asked for; it has to be asked for again.
+    TooLate,
+}
 
 impl Dispatcher {
     /// What is to be planned anew because of news, if anything is. While events are in flight it is not known from where
@@ -17,17 +32,28 @@ impl Dispatcher {
         Some(self.rebuild(self.now.max(now.as_micros())))
     }
 
-    /// Goes on with a new plan. Returns false if it came too late: something has happened since, and it has to be asked for
-    /// again.
-    pub fn handle_rebuilt(&mut self, rebuilt: Rebuilt) -> bool {
-        let current = rebuilt.version == self.version;
+    /// True if this is the plan for all that has happened.
+    pub(crate) fn is_current(&self, rebuilt: &Rebuilt) -> bool {
+        rebuilt.version == self.version
+    }
+
+    /// Goes on with a new plan, or without one.
+    pub fn handle_rebuilt(&mut self, rebuilt: Rebuilt) -> Adoption {
         self.asked = false;
-        if current {
-            // It knows all the news there is.
-            self.stale = false;
-            self.adopt(rebuilt);
+        if !self.is_current(&rebuilt) {
+            return Adoption::TooLate;
         }
-        current
+        // It knows all the news there is.
+        (self.stale, self.broken) = (false, false);
+        let Some((reduction, net)) = rebuilt.plan else {
+            // In a delayed chain the reduction may be too careful to see that there is a way. Then the old plan stands.
+            self.fix_heard();
+            return Adoption::NoPlan;
+        };
+        self.agenda = agenda(&reduction, &net, &self.confirmed, self.settings.lead);
+        self.reduction = reduction;
+        self.take_up(rebuilt.now.as_micros());
+        Adoption::Followed
     }
 
     /// True if the news of an event narrowed what was assumed of it, and that makes a difference to what is left.
@@ -43,35 +69,41 @@ impl Dispatcher {
     }
 
     /// Puts what is known in place of the links, for what is left to be planned anew.
-    pub(super) fn rebuild(&mut self, from: i64) -> Rebuild {
-        let network = self.plan.shared_network();
-        self.knowledge.settle_ancestors(&network);
-        let happened = self.knowledge.all_happened(&network);
-        let known = network
-            .event_ids()
-            .map(|event| match (network.link_of(event), self.knowledge.of(event)) {
-                (None, known) => known.fixed.map(|(time, _)| (time, time)),
-                (Some(_), known) if known.settled => happened[event.index()]
-                    .map(|(low, high)| (Time::from_micros(low), Time::from_micros(high))),
-                _ => None,
-            })
-            .collect();
+    fn rebuild(&mut self, from: i64) -> Rebuild {
+        let network = Arc::clone(&self.network);
+        let known = self.knowledge.progress(&network);
         Rebuild::new(network, Time::from_micros(from), known, self.version)
     }
 
-    /// Follows a new plan; false if there is none.
-    pub(super) fn adopt(&mut self, rebuilt: Rebuilt) -> bool {
-        let Some((reduction, net)) = rebuilt.plan else {
-            // In a delayed chain the reduction may be too careful to see that there is a way. Then the old plan stands.
-            self.fix_heard();
-            return false;
-        };
-        let planned = rebuilt.now.as_micros();
-        self.agenda = agenda(&reduction, &net, &self.confirmed, self.settings.lead);
-        self.reduction = reduction;
+    /// The events of which something has become known since the last checkpoint, and the time now.
+    pub(crate) fn checkpoint(&mut self) -> (Vec<EventId>, Time) {
+        (self.knowledge.take_touched(), Time::from_micros(self.now))
+    }
+
+    /// Goes on from what is known, with the plan that was made of it at some time; `None` if there is none.
+    pub(crate) fn restored(
+        network: &Arc<Network>,
+        settings: Settings,
+        mut knowledge: Knowledge,
+        (now, version): (Time, u64),
+        planned: Time,
+    ) -> Option<Dispatcher> {
+        let known = knowledge.progress(network);
+        let rebuilt = Rebuild::new(Arc::clone(network), planned, known, version).run();
+        let (reduction, net) = rebuilt.plan?;
+        let plan = Plan { network: Arc::clone(network), reduction, net };
+        let mut dispatcher = Dispatcher::following(plan, settings, knowledge);
+        dispatcher.now = now.as_micros();
+        dispatcher.version = version;
+        dispatcher.take_up(planned.as_micros());
+        Some(dispatcher)
+    }
+
+    /// Begins to follow a plan that was made at some time: what it takes for known is fixed.
+    fn take_up(&mut self, planned: i64) {
         self.active.clear();
         self.activate_from_origin();
-        for event in self.plan.network().event_ids() {
+        for event in self.network.event_ids() {
             let known = *self.known(event);
             if known.settled && known.fixed.is_none() {
                 let (time, how) = match known.observed.map(Time::as_micros) {
@@ -83,12 +115,11 @@ impl Dispatcher {
                 self.fix(event, time, how);
             }
         }
-        true
     }
 
     /// What was heard and has no place of its own in the plan is fixed when it was heard.
     pub(crate) fn fix_heard(&mut self) {
-        for event in self.plan.network().event_ids() {
+        for event in self.network.event_ids() {
             let known = *self.known(event);
             if let (Some(heard), None, true) = (known.observed, known.fixed, self.is_hidden(event)) {
                 self.fix(event, heard.as_micros(), How::Observed);

@@ -77,6 +77,7 @@ impl Executive {
                 state: State::Sent,
                 reason: String::new(),
                 doubtful: false,
+                kept: false,
             });
             self.send(self.orders.len() - 1);
         }

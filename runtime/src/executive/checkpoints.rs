@@ -1,0 +1,95 @@
+//! From an executive to what it knows, and back.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use kirk_network::{EventId, Network, Time};
+
+use super::{Broken, Executive, Setup};
+use crate::checkpoint::Checkpoint;
+use crate::dispatcher::Dispatcher;
+use crate::knowledge::{Knowledge, Known};
+use crate::order::State;
+use crate::replay::names;
+
+impl Executive {
+    /// What has become known since the last checkpoint. Nothing may be in flight.
+    pub(super) fn checkpoint(&mut self) -> Checkpoint {
+        let (touched, now) = self.dispatcher.checkpoint();
+        let name = |event: EventId| self.dispatcher.network().id(event).to_string();
+        let timed = |list: &[(Time, EventId)]| {
+            list.iter().map(|&(time, event)| (time.as_micros(), name(event))).collect::<Vec<_>>()
+        };
+        let changed = self.orders.iter().enumerate().filter(|(_, order)| !order.kept);
+        let checkpoint = Checkpoint {
+            now: now.as_micros(),
+            versions: (self.dispatcher.version(), self.changes),
+            events: touched.iter().map(|&event| (name(event), self.dispatcher.known(event).into())).collect(),
+            orders: changed.map(|(at, order)| (at as u32, order.into())).collect(),
+            held: timed(&self.held),
+            awaited: timed(&self.awaited),
+            broken: self
+                .broken
+                .iter()
+                .map(|broken| (broken.arrived.as_micros(), name(broken.event), broken.said.clone()))
+                .collect(),
+        };
+        for order in &mut self.orders {
+            order.kept = order.state == State::Done;
+        }
+        checkpoint
+    }
+
+    /// The executive that knew all this and then, at `now`, went on with a plan that was made of it for `planned`.
+    ///
+    /// # Errors
+    /// A sentence: this was never known in this mission.
+    pub(crate) fn restored(
+        network: &Arc<Network>,
+        setup: Setup,
+        known: &Checkpoint,
+        planned: Time,
+        now: Time,
+    ) -> Result<Executive, String> {
+        let names: HashMap<&str, EventId> = names(network).collect();
+        let find =
+            |name: &String| names.get(name.as_str()).copied().ok_or(format!("there is no event `{name}`"));
+        let mut knowledge = Knowledge::new(network);
+        for (name, event) in &known.events {
+            knowledge.recall(find(name)?, Known::from(event));
+        }
+        let settings = setup.settings_for(network);
+        let state = (Time::from_micros(known.now), known.versions.0);
+        let dispatcher = Dispatcher::restored(network, settings, knowledge, state, planned)
+            .ok_or("there is no plan with what is known here")?;
+        let mut executive = Executive::around(dispatcher, setup);
+        executive.changes = known.versions.1;
+        let timed = |list: &[(i64, String)]| -> Result<Vec<_>, String> {
+            list.iter().map(|(time, name)| Ok((Time::from_micros(*time), find(name)?))).collect()
+        };
+        executive.held = timed(&known.held)?;
+        executive.awaited = timed(&known.awaited)?;
+        for (arrived, name, said) in &known.broken {
+            let (event, arrived) = (find(name)?, Time::from_micros(*arrived));
+            executive.broken.push(Broken { event, arrived, said: said.clone() });
+        }
+        let by_name: HashMap<&str, usize> = executive
+            .handovers
+            .iter()
+            .enumerate()
+            .map(|(at, handover)| (handover.name.as_str(), at))
+            .collect();
+        let mut orders = Vec::new();
+        for order in known.orders.values() {
+            let at =
+                by_name.get(order.name.as_str()).ok_or(format!("`{}` is not handed over", order.name))?;
+            orders.push(order.order(&executive.run, &executive.handovers[*at]));
+        }
+        let told = |event: &EventId| orders.iter().any(|order| order.event == *event);
+        executive.unannounced.retain(|event| !told(event));
+        executive.orders = orders;
+        executive.mend();
+        executive.handle_timeout(now);
+        Ok(executive)
+    }
+}

@@ -48,10 +48,7 @@ impl Dispatchable {
 
 /// Makes a network dispatchable; `None` if it is not controllable. No edge is needless.
 pub fn dispatchable(stnu: &Stnu) -> Result<Option<Dispatchable>, TooLarge> {
-    let Some(Solution { derived, waits, potential }) = solve(stnu)? else { return Ok(None) };
-    let potential = fit(&when_nature_takes_the_least(stnu, &derived), potential)?;
-    let mut edges = stnu.edges.clone();
-    edges.extend(implied_by_links(stnu, derived, &potential)?);
+    let Some(Consequences { mut edges, waits, potential }) = consequences(stnu)? else { return Ok(None) };
     let rigid = Rigid::new(stnu, &edges, &potential);
     // What Nature keeps by herself helps to make other edges needless, and is needless itself.
     let nature = rigid.contracted(&nature_keeps(stnu))?;
@@ -71,6 +68,24 @@ pub fn dispatchable(stnu: &Stnu) -> Result<Option<Dispatchable>, TooLarge> {
     let waits = waits.into_iter().filter(needed).collect();
     let simultaneous = rigid.simultaneous();
     Ok(Some(Dispatchable { nodes: stnu.nodes, links: stnu.links.clone(), edges: kept, waits, simultaneous }))
+}
+
+/// All that follows from a controllable network, with what is in it: nothing else is to be kept in an execution.
+pub(crate) struct Consequences {
+    /// Ordinary edges, those of the network first.
+    pub(crate) edges: Vec<Edge>,
+    pub(crate) waits: Vec<Wait>,
+    /// Potentials that fit the edges, and the links if each takes its least.
+    pub(crate) potential: Vec<i64>,
+}
+
+/// What follows from a network; `None` if it is not controllable.
+pub(crate) fn consequences(stnu: &Stnu) -> Result<Option<Consequences>, TooLarge> {
+    let Some(Solution { derived, waits, potential }) = solve(stnu)? else { return Ok(None) };
+    let potential = fit(&when_nature_takes_the_least(stnu, &derived), potential)?;
+    let mut edges = stnu.edges.clone();
+    edges.extend(implied_by_links(stnu, derived, &potential)?);
+    Ok(Some(Consequences { edges, waits, potential }))
 }
 
 /// All edges if every link takes its least: what fits these fits everything that follows from the network.

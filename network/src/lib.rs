@@ -31,8 +31,12 @@
 //! | blame | [`mod@check`] | negative cycle | minimal [`Conflict`] in terms of the network |
 //! | compile | [`mod@dispatchable`] | plain STNU | [`Dispatchable`] |
 //!
+//! Around the verdict, each asking for it at other values of the bounds ([`vary`]): [`least`] finds the least change of a
+//! bound that turns a "no" into a "yes", [`mod@slack`] how far a bound can move before a "yes" is lost, [`promise`] by when and
+//! how long something can be promised.
+//!
 //! [`mod@punctual`] finds the events of a controllable network that can never be executed late.
-//! [`mod@windows`] says between which times each event can happen at all, [`news`] what becomes of late news.
+//! [`mod@windows`] says between which times each event can happen, [`news`] what becomes of late news.
 //!
 //! [`json`], [`graphml`], [`plain`], [`dot`] and [`text`] are the formats, [`generate`] makes networks to measure with.
 //!
@@ -65,19 +69,24 @@ pub mod graphml;
 mod hierarchy;
 pub mod json;
 pub mod kinds;
+pub mod least;
 pub mod merge;
 pub mod model;
 pub mod news;
 pub mod places;
 pub mod plain;
+pub mod promise;
 pub mod punctual;
 mod radix;
 pub mod reduce;
 pub mod rmpl;
+pub mod slack;
 pub mod stnu;
 pub mod text;
 pub mod time;
+
 mod trees;
+pub mod vary;
 pub mod windows;
 
 pub use check::{Verdict, check};

@@ -160,6 +160,27 @@ impl Network {
         self.link_of[event.index()].map(|link| link as usize)
     }
 
+    /// A requirement to vary. Its ends must stay, and no event may be joined or parted by it in what was merged.
+    pub(crate) fn requirement_mut(&mut self, index: usize) -> &mut Requirement {
+        &mut self.requirements[index]
+    }
+
+    /// A contingent link to vary. Its ends must stay.
+    pub(crate) fn link_mut(&mut self, index: usize) -> &mut ContingentLink {
+        &mut self.contingents[index]
+    }
+
+    /// One more requirement between events of this network; its index.
+    pub(crate) fn require(&mut self, requirement: Requirement) -> usize {
+        self.requirements.push(requirement);
+        self.requirements.len() - 1
+    }
+
+    /// Takes the last requirement out again.
+    pub(crate) fn forget_last_requirement(&mut self) {
+        self.requirements.pop();
+    }
+
     /// The ids of all events, in order.
     pub fn event_ids(&self) -> impl Iterator<Item = EventId> + use<> {
         (0..self.events.len() as u32).map(EventId)

@@ -1,16 +1,28 @@
-//! When each event can happen at all: the window of its times in the schedules that keep every bound.
+//! When each event can happen in an execution that keeps the guarantee: nothing happens outside of its window.
 //!
-//! The network is read as an STN, Nature's bounds like ours and news as if it came at once (R. Dechter, I. Meiri,
-//! J. Pearl, *Temporal constraint networks*, 1991): the windows are shortest paths from and to the origin. Nothing that
-//! can be executed lies outside of them; not every time inside need be reachable, as Nature has a say.
+//! An execution may do what the dispatchable network leaves open, and nothing else keeps the guarantee. Once Nature has
+//! chosen, that network is a simple temporal network (P. Morris, *Dynamic controllability and dispatchability
+//! relationships*, 2014), whose earliest and latest times are shortest paths from and to the origin (R. Dechter, I. Meiri,
+//! J. Pearl, *Temporal constraint networks*, 1991). What must come before a contingent event comes so early even if Nature takes
+//! the least, and what must come after it so late even if she takes the most. So every event is earliest when all links take
+//! their least and nothing is put off, and latest when all take their most and everything is.
+//!
+//! News that is late by more or less may be used in cleverer ways than the dispatchable network does. But nobody can do more
+//! than with news that always comes at its earliest, and of that the network is exact.
 
 use std::collections::VecDeque;
 
-use crate::model::Network;
-use crate::stnu::{Rows, add};
-use crate::time::{Bound, Time};
+use crate::check::{Verdict, check};
+use crate::dispatchable::{Consequences, consequences};
+use crate::merge::merge;
+use crate::model::{Delay, Network};
+use crate::reduce::reduce;
+use crate::stnu::{Edge, Link, Rows, Stnu, add};
+use crate::time::Time;
 
-/// The times at which an event can happen, from the origin on.
+/// The times at which an event can happen while the guarantee is kept.
+///
+/// Where no news is late, or all is equally late and in no chain, both ends are reached if Nature and we choose so.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Window {
     /// Not before this.
@@ -19,89 +31,87 @@ pub struct Window {
     pub latest: Option<Time>,
 }
 
-/// The window of every event; `None` if no schedule keeps every bound, or the numbers are too large.
+/// The window of every event; `None` if the network is not controllable, or the numbers are too large.
 pub fn windows(network: &Network) -> Option<Vec<Window>> {
-    let edges = edges(network);
-    let origin = network.origin().index();
-    let count = network.events().len();
-    // From an event back to the origin: no event comes before it, which is a path of length 0.
-    let earliest = shortest(count, &edges, vec![Some(0); count], Direction::Backward)?;
-    let mut start = vec![None; count];
-    start[origin] = Some(0);
-    let latest = shortest(count, &edges, start, Direction::Forward)?;
-    // Every event leads back to the origin, so a cycle is found on the way there, also one that needs "not before it".
-    if earliest[origin] != Some(0) {
+    if check(network) != Ok(Verdict::Controllable) {
         return None;
     }
-    let window = |(early, late): (&Option<i64>, &Option<i64>)| Window {
-        earliest: early.map_or(Time::ZERO, |distance| Time::from_micros(-distance)),
-        latest: late.map(Time::from_micros),
+    let mut merged = merge(network);
+    hear_early(&mut merged.network);
+    let reduction = reduce(&merged.network).ok()?;
+    let stnu = &reduction.stnu;
+    let followed = consequences(stnu).ok()??;
+    let least = shortest(stnu, &projected(stnu, &followed, |link| link.lower), Direction::ToOrigin)?;
+    let most = shortest(stnu, &projected(stnu, &followed, |link| link.upper), Direction::FromOrigin)?;
+    let window = |event: usize| {
+        let place = reduction.places[merged.event_of[event].index()];
+        let earliest = add(-least[place.node as usize]?, place.earliest).ok()?;
+        let latest = match most[place.node as usize] {
+            Some(latest) => Some(Time::from_micros(add(latest, place.latest).ok()?)),
+            None => None,
+        };
+        Some(Window { earliest: Time::from_micros(earliest), latest })
     };
-    Some(earliest.iter().zip(&latest).map(window).collect())
+    (0..network.events().len()).map(window).collect()
 }
 
-/// `to - from <= weight`.
-struct Edge {
-    from: u32,
-    to: u32,
-    weight: i64,
+/// All news comes as early as it can; in chains, of which the reduction is not exact, at once.
+fn hear_early(network: &mut Network) {
+    let mut chained = vec![false; network.contingents().len()];
+    for (index, link) in network.contingents().iter().enumerate() {
+        if let Some(above) = network.link_of(link.from) {
+            (chained[index], chained[above]) = (true, true);
+        }
+    }
+    for (index, chained) in chained.into_iter().enumerate() {
+        let delay = &mut network.link_mut(index).delay;
+        *delay = if chained { Delay::NONE } else { Delay { min: delay.min, max: delay.min.into() } };
+    }
 }
 
-fn edges(network: &Network) -> Vec<Edge> {
-    let mut edges = Vec::with_capacity(2 * (network.requirements().len() + network.contingents().len()));
-    for requirement in network.requirements() {
-        let (from, to) = (requirement.from.0, requirement.to.0);
-        if let Bound::Finite(upper) = requirement.upper {
-            edges.push(Edge { from, to, weight: upper.as_micros() });
-        }
-        if let Bound::Finite(lower) = requirement.lower {
-            edges.push(Edge { from: to, to: from, weight: -lower.as_micros() });
-        }
-    }
-    for link in network.contingents() {
-        let (from, to) = (link.from.0, link.to.0);
-        edges.push(Edge { from, to, weight: link.upper.as_micros() });
-        edges.push(Edge { from: to, to: from, weight: -link.lower.as_micros() });
-    }
-    edges
+/// What is to be kept once Nature has chosen so for every link.
+fn projected(stnu: &Stnu, followed: &Consequences, choice: fn(&Link) -> i64) -> Vec<Edge> {
+    let chosen = stnu.links.iter().flat_map(|link| {
+        let Link { activation, contingent, .. } = *link;
+        [
+            Edge { from: activation, to: contingent, weight: choice(link) },
+            Edge { from: contingent, to: activation, weight: -choice(link) },
+        ]
+    });
+    // A wait ends when its contingent event happens.
+    let waits = followed.waits.iter().map(|wait| {
+        let link = stnu.links[wait.link as usize];
+        Edge { from: wait.waiter, to: link.activation, weight: wait.weight.max(-choice(&link)) }
+    });
+    followed.edges.iter().copied().chain(chosen).chain(waits).collect()
 }
 
 #[derive(Clone, Copy, PartialEq)]
 enum Direction {
-    Forward,
-    Backward,
+    FromOrigin,
+    ToOrigin,
 }
 
-/// Bellman-Ford with a queue; `None` if a cycle is negative or a sum too large.
-fn shortest(
-    count: usize,
-    edges: &[Edge],
-    mut distance: Vec<Option<i64>>,
-    direction: Direction,
-) -> Option<Vec<Option<i64>>> {
+/// Bellman-Ford with a queue; `None` if a sum is too large. Of a controllable network no cycle is negative.
+fn shortest(stnu: &Stnu, edges: &[Edge], direction: Direction) -> Option<Vec<Option<i64>>> {
     let ends = |edge: &Edge| match direction {
-        Direction::Forward => (edge.from, edge.to),
-        Direction::Backward => (edge.to, edge.from),
+        Direction::FromOrigin => (edge.from, edge.to),
+        Direction::ToOrigin => (edge.to, edge.from),
     };
-    let outgoing = Rows::new(count as u32, edges.iter().map(|edge| ends(edge).0));
-    let mut open: VecDeque<u32> =
-        (0..count as u32).filter(|&event| distance[event as usize].is_some()).collect();
-    let mut queued: Vec<bool> = distance.iter().map(Option::is_some).collect();
-    // How many edges the path has that led here: as many as there are events is a cycle.
-    let mut length = vec![0_u32; count];
-    while let Some(event) = open.pop_front() {
-        queued[event as usize] = false;
-        let Some(here) = distance[event as usize] else { continue };
-        for &edge in outgoing.of(event) {
+    let outgoing = Rows::new(stnu.nodes, edges.iter().map(|edge| ends(edge).0));
+    let mut distance = vec![None; stnu.nodes as usize];
+    let mut queued = vec![false; stnu.nodes as usize];
+    let mut open = VecDeque::from([0_u32]);
+    distance[0] = Some(0);
+    while let Some(node) = open.pop_front() {
+        queued[node as usize] = false;
+        let Some(here) = distance[node as usize] else { continue };
+        for &edge in outgoing.of(node) {
             let edge = &edges[edge as usize];
             let next = ends(edge).1 as usize;
             let there = add(here, edge.weight).ok()?;
             if distance[next].is_none_or(|known| there < known) {
                 distance[next] = Some(there);
-                length[next] = length[event as usize] + 1;
-                if length[next] as usize > count {
-                    return None;
-                }
                 if !std::mem::replace(&mut queued[next], true) {
                     open.push_back(next as u32);
                 }

@@ -1,0 +1,74 @@
+//! What can be promised of single events of a controllable network: by when, not before when, and how long it may take.
+
+use crate::conflict::Part;
+use crate::model::{EventId, Network};
+use crate::slack::hardest_yes;
+use crate::stnu::TooLarge;
+use crate::time::{Bound, Time};
+use crate::vary::{Knob, Probe};
+
+/// What can be promised of the time of one event, each alone, all else as it is.
+///
+/// Where `by` is the later of the two, the time of the event depends on what Nature does. Promising one may cost the other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Promise {
+    /// "It happens by then": the earliest time of which this can be promised. `None` if it cannot be of any.
+    pub by: Option<Time>,
+    /// "It does not happen before": the latest time of which this can be promised, for what is ours to start the latest
+    /// guaranteed start. `None` if it can be of every time.
+    pub from: Option<Time>,
+}
+
+/// What can be promised of the times of some events; `None` if the network is not controllable.
+///
+/// Each figure is exact: a microsecond before `by`, or after `from`, it cannot be promised.
+///
+/// # Errors
+/// [`TooLarge`] if the durations add up to more than 64-bit microseconds can hold.
+pub fn promises(network: &Network, events: &[EventId]) -> Result<Option<Vec<Promise>>, TooLarge> {
+    let mut probe = Probe::new(network);
+    if !probe.as_is()? {
+        return Ok(None);
+    }
+    let of = |event: &EventId| {
+        let Some(requirement) = probe.require_time_of(*event) else {
+            return Promise { by: Some(Time::ZERO), from: Some(Time::ZERO) };
+        };
+        let mut farthest = |part: Part| {
+            let dial = Probe::unbounded(part);
+            let position = hardest_yes(&mut probe, &dial);
+            dial.value(position).finite().map(|value| Time::from_micros(value.as_micros()))
+        };
+        let promise = Promise {
+            by: farthest(Part::RequirementUpper(requirement)),
+            from: farthest(Part::RequirementLower(requirement)),
+        };
+        probe.forget_time();
+        promise
+    };
+    Ok(Some(events.iter().map(of).collect()))
+}
+
+/// How long what a requirement bounds may be made to take, its own upper bound aside, with all else still guaranteed.
+///
+/// `Infinite` if nothing limits it. `None` if the network is not controllable.
+///
+/// # Errors
+/// [`TooLarge`] if the durations add up to more than 64-bit microseconds can hold.
+pub fn stretch(network: &Network, requirement: usize) -> Result<Option<Bound>, TooLarge> {
+    if !Probe::new(network).as_is()? {
+        return Ok(None);
+    }
+    let lower = network.requirements()[requirement].lower;
+    let mut open = network.clone();
+    open.requirement_mut(requirement).upper = Bound::Infinite;
+    let mut probe = Probe::new(&open);
+    // What was one moment and has become two may be impossible; so may more time be where late news of chains is in play.
+    let Some(knob) = Knob::of(Part::RequirementLower(requirement)) else { return Ok(None) };
+    if !probe.as_is()? {
+        return Ok(Some(lower));
+    }
+    let dial = probe.dial(&knob);
+    let position = hardest_yes(&mut probe, &dial);
+    Ok(Some(dial.value(position)))
+}

@@ -4,7 +4,12 @@
 //! for one bound at a time. What a conflict lacks is no answer to it, only a guess: there may be another conflict, and a cycle
 //! may cease to be semi-reducible before its sum is mended. The verdict itself is asked instead (`vary.rs`).
 
-use crate::model::Network;
+use std::collections::BTreeSet;
+use std::iter::successors;
+
+use crate::conflict::{Conflict, Part};
+use crate::merge::merge;
+use crate::model::{EventId, Network};
 use crate::stnu::TooLarge;
 use crate::vary::{Change, Knob, Probe};
 
@@ -44,4 +49,37 @@ pub fn least_changes(network: &Network, knobs: &[Knob]) -> Result<Vec<Option<Cha
         helps.then(|| dial.change(probe.boundary(&dial, dial.here, far)))
     };
     Ok(knobs.iter().map(least).collect())
+}
+
+/// The bounds of which one alone might settle a conflict: those of its members, all four of a link. How late the news of it is
+/// decides whether it is of any use, whatever share it has. What is not in a conflict leaves it as it is, but for one
+/// thing: events that follow from the same activation may tell of one another.
+pub fn could_settle(network: &Network, conflict: &Conflict) -> Vec<Part> {
+    let merged = merge(network).network;
+    let root = |link: usize| {
+        let parent = |event: &EventId| Some(merged.contingents()[merged.link_of(*event)?].from);
+        successors(Some(merged.contingents()[link].to), parent).last()
+    };
+    let (mut parts, mut roots) = (BTreeSet::new(), BTreeSet::new());
+    for share in &conflict.members {
+        match share.part {
+            Part::RequirementUpper(_) | Part::RequirementLower(_) => {
+                parts.insert(share.part);
+            }
+            Part::Join(index) => parts.extend([Part::RequirementUpper(index), Part::RequirementLower(index)]),
+            Part::LinkLower(link) | Part::LinkUpper(link) | Part::DelayMin(link) | Part::DelayMax(link) => {
+                roots.insert(root(link));
+            }
+            Part::AfterOrigin => {}
+        }
+    }
+    for link in (0..merged.contingents().len()).filter(|link| roots.contains(&root(*link))) {
+        parts.extend([
+            Part::LinkLower(link),
+            Part::LinkUpper(link),
+            Part::DelayMin(link),
+            Part::DelayMax(link),
+        ]);
+    }
+    parts.into_iter().collect()
 }

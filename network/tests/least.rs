@@ -6,7 +6,7 @@
 
 mod oracle;
 
-use kirk_network::least::least_changes;
+use kirk_network::least::{could_settle, least_changes};
 use kirk_network::merge::merge;
 use kirk_network::slack::bounds;
 use kirk_network::vary::{Change, Knob};
@@ -160,6 +160,28 @@ fn the_game_agrees_on_both_sides_of_the_least_change() {
         }
     }
     assert!(agreed > 80 && careful < agreed / 10, "{agreed} agreed, {careful} were too careful");
+}
+
+#[test]
+fn what_could_settle_a_conflict_is_all_that_can_settle_it_alone() {
+    let shapes =
+        [Shape::tiny_delayed(), Shape::tiny_delayed().chained(), Shape::medium(), Shape::medium().chained()];
+    let (mut helps, mut left_out) = (0, 0);
+    for seed in 0..cases(1500) {
+        let network = random::network(seed, &shapes[(seed % 4) as usize]);
+        let Verdict::Uncontrollable(conflict) = check(&network).unwrap() else { continue };
+        let candidates = could_settle(&network, &conflict);
+        for (knob, change) in changes(&network) {
+            if change.is_some() {
+                helps += 1;
+                let is_candidate = candidates.contains(&knob.parts()[0]);
+                assert!(is_candidate, "seed {seed}, {change:?} of\n{}", random::describe(&network));
+            } else {
+                left_out += usize::from(!candidates.contains(&knob.parts()[0]));
+            }
+        }
+    }
+    assert!(helps > 500 && left_out > 500, "{helps} help, {left_out} are no candidates");
 }
 
 #[test]

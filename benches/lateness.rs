@@ -69,7 +69,8 @@ fn execute(journal: bool, flood: bool) -> (Ended, u64) {
     };
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("journal");
-    let ready = begin(mission, options, journal.then_some(file.as_path()), true).unwrap();
+    let ready =
+        begin(mission, options, journal.then_some(file.as_path()), std::sync::mpsc::channel().0).unwrap();
     let address = ready.address().unwrap();
     let (stop, posts) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicU64::new(0)));
     let started = Instant::now();

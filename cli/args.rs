@@ -113,8 +113,10 @@ pub(crate) struct Run {
     #[arg(long, default_value_t = 0, value_name = "N", requires = "simulate", help_heading = "Simulation")]
     pub(crate) seed: u64,
     /// What to do with news that says more than the plan assumed.
-    #[arg(long, value_enum, default_value_t = StrategyName::Optimistic)]
-    pub(crate) strategy: StrategyName,
+    ///
+    /// [default: optimistic]
+    #[arg(long, value_enum)]
+    pub(crate) strategy: Option<StrategyName>,
     /// The same as --strategy optimistic, which is the default.
     #[arg(long, conflicts_with = "strategy")]
     pub(crate) optimistic: bool,
@@ -145,6 +147,16 @@ pub(crate) struct Live {
     /// Which events the driver hears of.
     #[arg(long, value_enum, default_value_t = DriverEvents::Starts, value_name = "WHICH", conflicts_with = "simulate")]
     pub(crate) driver_events: DriverEvents,
+    /// Whether the driver also hears of starts that are one with an event of Nature's.
+    ///
+    /// [default: all]
+    #[arg(long, value_enum, value_name = "WHICH", conflicts_with = "simulate")]
+    pub(crate) driver_starts: Option<DriverStarts>,
+    /// What the driver is told beside the start of an activity (the second `~A`).
+    ///
+    /// [default: end]
+    #[arg(long, value_enum, value_name = "WHAT", conflicts_with = "simulate")]
+    pub(crate) companion: Option<CompanionName>,
     /// How many seconds the driver may take for an answer.
     #[arg(long, default_value = "10", value_name = "S", value_parser = positive, conflicts_with = "simulate")]
     pub(crate) driver_timeout: f64,
@@ -169,6 +181,71 @@ pub(crate) struct Live {
     /// Record everything there, so that `kirk resume` can go on after whatever interrupts the mission.
     #[arg(long, value_name = "FILE", conflicts_with = "simulate")]
     pub(crate) journal: Option<PathBuf>,
+    /// Whether the mission is shown on a screen of the terminal, or by lines.
+    ///
+    /// [default: auto; never with the original's --driver-command or --optimistic]
+    #[arg(long, value_enum, value_name = "WHEN", conflicts_with = "simulate")]
+    pub(crate) screen: Option<ScreenWhen>,
+    /// In all that kirk does differently do as the original: --driver-starts own, --companion merged, --screen never,
+    /// --strategy buffer. What is given beside it holds.
+    #[arg(long, conflicts_with = "simulate")]
+    pub(crate) like_original: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum DriverStarts {
+    /// Only those that kirk decides: what follows an event of Nature's without slack starts by itself, as with the original.
+    Own,
+    /// All of them.
+    All,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum CompanionName {
+    /// The end of the activity.
+    End,
+    /// The start that the end is one with, if it is one with a start, as with the original.
+    Merged,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ScreenWhen {
+    /// If standard input is a terminal, and standard output or standard error.
+    Auto,
+    /// Lines in any case.
+    Never,
+    /// A screen, or an error if there is no terminal.
+    Always,
+}
+
+impl Run {
+    /// What to do with news that says more than the plan assumed.
+    pub(crate) fn strategy(&self) -> StrategyName {
+        match self.strategy {
+            Some(strategy) => strategy,
+            None if self.live.like_original && !self.optimistic => StrategyName::Buffer,
+            None => StrategyName::Optimistic,
+        }
+    }
+
+    /// Whether the mission is shown on a screen. Whoever uses the options of the original has a launch file, under which
+    /// standard input may be a terminal, and wants lines.
+    pub(crate) fn screen(&self) -> ScreenWhen {
+        let original = self.live.like_original || self.live.driver_command.is_some() || self.optimistic;
+        self.live.screen.unwrap_or(if original { ScreenWhen::Never } else { ScreenWhen::Auto })
+    }
+}
+
+impl Live {
+    pub(crate) fn driver_starts(&self) -> DriverStarts {
+        let usual = if self.like_original { DriverStarts::Own } else { DriverStarts::All };
+        self.driver_starts.unwrap_or(usual)
+    }
+
+    pub(crate) fn companion(&self) -> CompanionName {
+        let usual = if self.like_original { CompanionName::Merged } else { CompanionName::End };
+        self.companion.unwrap_or(usual)
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -209,6 +286,9 @@ pub(crate) struct Resume {
     /// What time it is in the mission, in seconds after its start, if the clocks cannot tell.
     #[arg(long, value_name = "S", value_parser = not_negative)]
     pub(crate) at: Option<f64>,
+    /// Whether the mission is shown on a screen of the terminal, or by lines [default: as it was begun].
+    #[arg(long, value_enum, value_name = "WHEN")]
+    pub(crate) screen: Option<ScreenWhen>,
     /// Also print the events that no user wrote.
     #[arg(long)]
     pub(crate) internal: bool,

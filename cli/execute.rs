@@ -1,13 +1,17 @@
 //! `kirk run` in real time, and `kirk resume`.
 
 use std::io;
+use std::sync::mpsc::{Receiver, channel};
 
 use kirk_compiler::episode::{Episode, Kind};
-use kirk_executive::{Driver, Ended, Http, Mission, Options, Ready, Resumption, begin};
+use kirk_executive::{Driver, Ended, Http, Mission, Options, Ready, Resumption, Said, Screen, begin};
 use kirk_network::{Duration, Time};
-use kirk_runtime::{Execution, Outcome, Plan, Scope, handovers};
+use kirk_runtime::{Execution, Outcome, Plan, Scope, handovers, leave_out_natures, merge_companions};
 
-use crate::args::{Common, DriverEvents, Live, Resume, Run, StrategyName, TextOrJson};
+use crate::args::{
+    Common, CompanionName, DriverEvents, DriverStarts, Live, Resume, Run, ScreenWhen, StrategyName,
+    TextOrJson,
+};
 use crate::input::Input;
 use crate::json::line;
 use crate::live;
@@ -28,7 +32,14 @@ pub(crate) fn execute(arguments: &Run, common: &Common, input: &Input, plan: Pla
         DriverEvents::Starts => Scope::Starts,
         DriverEvents::All => Scope::All,
     };
-    let handovers = handovers(plan.network(), activities.as_deref(), scope);
+    let mut handovers = handovers(plan.network(), activities.as_deref(), scope);
+    // Before starts are left out: what the middleware begins by itself has its name all the same.
+    if arguments.live.companion() == CompanionName::Merged {
+        merge_companions(plan.network(), &mut handovers);
+    }
+    if arguments.live.driver_starts() == DriverStarts::Own {
+        leave_out_natures(plan.network(), &mut handovers);
+    }
     if options.driver.is_some() && handovers.is_empty() && !common.quiet {
         remark(
             "warning: the driver will hear of nothing: no event starts an activity (`x:start` with an `x:end`); \
@@ -37,11 +48,15 @@ pub(crate) fn execute(arguments: &Run, common: &Common, input: &Input, plan: Pla
     }
     let program = input.program(&arguments.selection);
     let mission = Mission { program, network: network.clone(), plan, handovers };
-    let screen = has_screen(common);
-    match begin(mission, options, arguments.live.journal.as_deref(), screen) {
+    let screen = match has_screen(options.screen) {
+        Ok(screen) => screen,
+        Err(message) => return wrong(&message),
+    };
+    let (out, said) = channel();
+    match begin(mission, options, arguments.live.journal.as_deref(), out) {
         Ok(ready) => {
             let stdin_taken = arguments.files.iter().any(|file| file == "-");
-            finish(ready, screen, stdin_taken, Show::of_run(arguments), common)
+            finish(ready, said, screen, stdin_taken, Show::of_run(arguments), common)
         }
         Err(message) => wrong(&message),
     }
@@ -56,9 +71,17 @@ pub(crate) fn resume(arguments: &Resume, common: &Common) -> io::Result<Status> 
         }
     };
     let show = Show { internal: arguments.internal, format: arguments.format };
-    let screen = has_screen(common);
-    match kirk_executive::resume(&arguments.journal, at, screen, note) {
-        Ok(Resumption::Ready(ready)) => finish(*ready, screen, false, show, common),
+    let wanted = arguments.screen.map(screen);
+    if let Some(Err(message)) = wanted.map(has_screen) {
+        return wrong(&message);
+    }
+    let (out, said) = channel();
+    match kirk_executive::resume(&arguments.journal, at, out, note) {
+        Ok(Resumption::Ready(ready)) => {
+            // The mission is to go on, also where there is no such terminal as there was when it was begun.
+            let screen = has_screen(wanted.unwrap_or(ready.options().screen)).unwrap_or(false);
+            finish(*ready, said, screen, false, show, common)
+        }
         Ok(Resumption::Over(execution)) => {
             if !common.quiet {
                 remark("the mission is over; there is nothing to go on with");
@@ -96,7 +119,14 @@ impl Show {
     }
 }
 
-fn finish(ready: Ready, screen: bool, stdin_taken: bool, show: Show, common: &Common) -> io::Result<Status> {
+fn finish(
+    ready: Ready,
+    said: Receiver<Said>,
+    screen: bool,
+    stdin_taken: bool,
+    show: Show,
+    common: &Common,
+) -> io::Result<Status> {
     let address = ready.address().map(|address| format!("news is heard at http://{address}/"));
     if let (Some(address), false) = (&address, common.quiet) {
         remark(address);
@@ -105,28 +135,41 @@ fn finish(ready: Ready, screen: bool, stdin_taken: bool, show: Show, common: &Co
     kirk_executive::stop_on_signals(desk.clone());
     let watching = if screen {
         let options = live::Options { color: output::colors(common.color), greeting: address };
-        Some(watch::screen(desk, options))
+        watch::screen(desk, options, said, common.quiet)
     } else {
-        let watching = (!common.quiet).then(|| watch::print(&desk));
+        let watching = watch::print(&desk, said, common.quiet);
         if !stdin_taken && !live::is_in_background() {
             watch::read_lines(desk);
         }
         watching
     };
     let ended = ready.run(show.internal);
-    if let Some(watching) = watching {
-        // It ends when it has said that the mission is over.
-        let _ = watching.join();
-    }
+    // It ends when it has said that the mission is over.
+    let _ = watching.join();
     if !common.quiet {
         say_lateness(&ended);
     }
     show.execution(&ended.execution)
 }
 
-/// True if the mission is shown on a screen, with a key for each event.
-fn has_screen(common: &Common) -> bool {
-    !common.quiet && live::is_there()
+/// True if the mission is shown on a screen, with a key for each event; an error if it is to be and cannot.
+fn has_screen(wanted: Screen) -> Result<bool, String> {
+    match (wanted, live::obstacle()) {
+        (Screen::Never, _) => Ok(false),
+        (Screen::Auto, _) => Ok(live::is_there()),
+        (Screen::Always, None) => Ok(true),
+        (Screen::Always, Some(why)) => {
+            Err(format!("there can be no screen, as `--screen always` wants: {why}"))
+        }
+    }
+}
+
+fn screen(when: ScreenWhen) -> Screen {
+    match when {
+        ScreenWhen::Auto => Screen::Auto,
+        ScreenWhen::Never => Screen::Never,
+        ScreenWhen::Always => Screen::Always,
+    }
 }
 
 fn say_lateness(ended: &Ended) {
@@ -170,13 +213,14 @@ fn options(arguments: &Run) -> Result<Options, String> {
         Http { bind: bind.clone(), port, token_file: token_file.clone() }
     });
     Ok(Options {
-        optimistic: arguments.strategy == StrategyName::Optimistic,
+        optimistic: arguments.strategy() == StrategyName::Optimistic,
         speed: live.speed,
         tolerance: live.tolerance,
         driver,
         driver_timeout: live.driver_timeout,
         http,
         on_failure: live.on_failure.clone(),
+        screen: screen(arguments.screen()),
     })
 }
 

@@ -17,7 +17,7 @@ use std::io;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::Instant;
 
-use kirk_executive::{Desk, Happening, Snapshot};
+use kirk_executive::{Desk, Happening, Said, Snapshot};
 use kirk_network::Time;
 use ratatui::backend::CrosstermBackend;
 use ratatui::layout::Rect;
@@ -28,7 +28,7 @@ use log::Tone;
 use state::{Action, Moment, State};
 use terminal::{Sent, Terminal, Writer};
 
-pub(crate) use terminal::{is_in_background, is_there};
+pub(crate) use terminal::{is_in_background, is_there, obstacle};
 
 /// How it looks.
 #[derive(Clone, Debug)]
@@ -53,12 +53,12 @@ pub(crate) enum End {
 /// How often the clock is looked at, and the most often it is drawn.
 const TICK_MILLIS: i64 = 100;
 
-/// Shows a mission and takes keys until the mission is over, or somebody or something takes the screen away. Blocks: it
-/// wants a thread of its own.
+/// Shows a mission, and what commands of its driver say, and takes keys until the mission is over, or somebody or something
+/// takes the screen away. Blocks: it wants a thread of its own.
 ///
 /// # Errors
 /// The terminal cannot be taken over, or fails in an unexpected way. It is given back in any case.
-pub(crate) fn run(desk: &Desk, options: Options) -> io::Result<End> {
+pub(crate) fn run(desk: &Desk, options: Options, said: &Receiver<Said>) -> io::Result<End> {
     let mut screen = Screen::up(options.color)?;
     let started = Instant::now();
     let now = || Moment { mission: desk.clock().now(), real: started.elapsed() };
@@ -83,6 +83,9 @@ pub(crate) fn run(desk: &Desk, options: Options) -> io::Result<End> {
                 Err(_) if happenings.is_empty() => break,
                 Err(lost) => state.say(now().mission, Tone::Warning, format!("not all is shown: {lost}")),
             }
+        }
+        for Said { who, line } in said.try_iter() {
+            state.say(now().mission, Tone::Answer, format!("{who} | {line}"));
         }
         for answer in answers.try_iter() {
             state.answered(answer, now());

@@ -68,7 +68,7 @@ pub(crate) fn run(arguments: &Run, common: &Common) -> io::Result<Status> {
         return Ok(Status::Wrong);
     }
     let simulation = Simulation {
-        strategy: match arguments.strategy {
+        strategy: match arguments.strategy() {
             StrategyName::Buffer => Strategy::Buffer,
             StrategyName::Optimistic => Strategy::Optimistic,
         },

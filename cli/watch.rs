@@ -2,9 +2,10 @@
 //! input.
 
 use std::io::BufRead;
+use std::sync::mpsc::Receiver;
 use std::thread::JoinHandle;
 
-use kirk_executive::{AnswerNews, Desk, Happening};
+use kirk_executive::{AnswerNews, Desk, Happening, Said};
 use serde::Deserialize;
 
 use crate::live;
@@ -12,7 +13,7 @@ use crate::output::remark;
 use crate::timetable::cells;
 
 /// Prints what happens to standard error, until the mission is over.
-pub(crate) fn print(desk: &Desk) -> JoinHandle<()> {
+fn happenings(desk: &Desk) -> JoinHandle<()> {
     let mut happenings = desk.listen();
     std::thread::spawn(move || {
         loop {
@@ -32,15 +33,37 @@ pub(crate) fn print(desk: &Desk) -> JoinHandle<()> {
     })
 }
 
-/// Shows the mission on a screen until it is over; with lines, if the terminal turns out not to do.
-pub(crate) fn screen(desk: Desk, options: live::Options) -> JoinHandle<()> {
+/// Prints what happens, unless `quiet`, and what commands of the driver say, until the mission is over and they are done.
+pub(crate) fn print(desk: &Desk, said: Receiver<Said>, quiet: bool) -> JoinHandle<()> {
+    let happenings = (!quiet).then(|| happenings(desk));
     std::thread::spawn(move || {
-        if let Err(error) = live::run(&desk, options) {
-            remark(&format!("no screen: {error}"));
-            read_lines(desk.clone());
-            let _ = print(&desk).join();
+        pass_on(&said);
+        if let Some(happenings) = happenings {
+            let _ = happenings.join();
         }
     })
+}
+
+/// Shows the mission on a screen until it is over; with lines, if the terminal turns out not to do.
+pub(crate) fn screen(
+    desk: Desk,
+    options: live::Options,
+    said: Receiver<Said>,
+    quiet: bool,
+) -> JoinHandle<()> {
+    std::thread::spawn(move || match live::run(&desk, options, &said) {
+        Ok(_) => pass_on(&said),
+        Err(error) => {
+            remark(&format!("no screen: {error}"));
+            read_lines(desk.clone());
+            let _ = print(&desk, said, quiet).join();
+        }
+    })
+}
+
+/// Prints what commands of the driver say, each line with whom it is from, until no driver is there any more.
+fn pass_on(said: &Receiver<Said>) {
+    said.iter().for_each(|Said { who, line }| remark(&format!("{who} | {line}")));
 }
 
 fn lines(happening: &Happening) -> Vec<String> {

@@ -115,6 +115,158 @@ fn ends_that_we_decide_are_handed_over_if_all_events_are() {
     assert_eq!(told, expected.into_iter().map(str::to_string).collect());
 }
 
+/// What the driver hears of a drone whose flight ends 4 s after it began, with these options.
+fn told_in_the_field(options: &[&str]) -> Vec<String> {
+    let folder = tempfile::tempdir().unwrap();
+    let log = folder.path().join("log");
+    let command = format!("echo ~A ~A >> {}", log.display());
+    let mut all = vec!["run", "tests/live/field.rmpl", "--speed", "10", "--driver-command", &command];
+    all.extend(options);
+    let mut kirk = start(&all);
+    while lines(&log).is_empty() {
+        assert!(kirk.try_wait().unwrap().is_none(), "{}", stderr(&kirk.wait_with_output().unwrap()));
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    std::thread::sleep(Duration::from_millis(400));
+    // The middleware says what it was told to, and any name of the event will do.
+    let end = lines(&log)[0].split(' ').nth(1).unwrap().to_string();
+    writeln!(kirk.stdin.as_ref().unwrap(), "{end}").unwrap();
+    let output = kirk.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let heard = |line: &str| line.contains("fly:end") && line.contains("observed");
+    assert!(stdout(&output).lines().any(heard), "{}", stdout(&output));
+    lines(&log)
+}
+
+#[test]
+fn a_start_that_is_one_with_natures_event_and_the_second_place_are_as_the_original_has_them_if_asked_for() {
+    let (fly, upload, land) =
+        ("+FLY::START+ +FLY::END+", "+UPLOAD::START+ +UPLOAD::END+", "+LAND::START+ +LAND::END+");
+    let (fly_merged, upload_merged) = ("+FLY::START+ +UPLOAD::START+", "+UPLOAD::START+ +LAND::START+");
+    assert_eq!(told_in_the_field(&[]), [fly, upload, land]);
+    assert_eq!(told_in_the_field(&["--driver-starts", "own"]), [fly, land]);
+    assert_eq!(told_in_the_field(&["--companion", "merged"]), [fly_merged, upload_merged, land]);
+    assert_eq!(told_in_the_field(&["--like-original"]), [fly_merged, land]);
+    let but = ["--like-original", "--driver-starts", "all", "--companion", "end"];
+    assert_eq!(told_in_the_field(&but), [fly, upload, land]);
+}
+
+/// What the first line of a journal says.
+fn begun_with(options: &[&str]) -> Value {
+    let folder = tempfile::tempdir().unwrap();
+    let journal = folder.path().join("journal");
+    let mut all =
+        vec!["run", "tests/live/field.rmpl", "--speed", "1000", "-q", "--journal", journal.to_str().unwrap()];
+    all.extend(options);
+    let output = start(&all).wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let first = lines(&journal).swap_remove(0);
+    serde_json::from_str::<Value>(&first[9..]).unwrap()["record"]["start"].clone()
+}
+
+#[test]
+fn like_original_sets_all_that_differs_and_the_journal_keeps_it() {
+    let usual = begun_with(&[]);
+    assert_eq!((&usual["optimistic"], &usual["shell"]["screen"]), (&true.into(), &"auto".into()));
+    let original = begun_with(&["--like-original"]);
+    assert_eq!((&original["optimistic"], &original["shell"]["screen"]), (&false.into(), &"never".into()));
+    let optimistic = begun_with(&["--like-original", "--optimistic"]);
+    assert_eq!(optimistic["optimistic"], true);
+    assert_eq!(begun_with(&["--optimistic"])["shell"]["screen"], "never");
+    assert_eq!(begun_with(&["--optimistic", "--screen", "auto"])["shell"]["screen"], "auto");
+    assert_eq!(begun_with(&["--driver-command", "true"])["shell"]["screen"], "never");
+    let simulated = kirk(&["run", "tests/live/once.rmpl", "--simulate", "--like-original"]);
+    assert_eq!(simulated.status.code(), Some(2));
+}
+
+#[test]
+fn like_original_is_every_switch_of_the_table_in_the_documentation() {
+    let page = std::fs::read_to_string("docs/EXECUTING.md").unwrap();
+    let table = page.split("| what | kirk | the original | switch |").nth(1).unwrap();
+    let rows = table.lines().skip(2).take_while(|line| line.starts_with('|'));
+    let switches: Vec<&str> = rows.map(|row| row.rsplit('`').nth(1).unwrap()).collect();
+    assert!(switches.len() >= 4, "{switches:?}");
+    let begun = |options: &[&str]| {
+        let start = begun_with(&[&["--driver-command", "true"], options].concat());
+        [&start["optimistic"], &start["handovers"], &start["shell"]].map(Value::clone)
+    };
+    let original = begun(&["--like-original"]);
+    let all: Vec<&str> = switches.iter().flat_map(|switch| switch.split(' ')).collect();
+    assert_eq!(begun(&all), original);
+    // Not one of them is idle, even where the screen is gone anyhow.
+    let usual = begun(&["--screen", "auto"]);
+    for switch in switches {
+        let options: Vec<&str> = switch.split(' ').collect();
+        let alone =
+            if options[0] == "--screen" { options } else { [&options[..], &["--screen", "auto"]].concat() };
+        assert_ne!(begun(&alone), usual, "{switch}");
+    }
+}
+
+#[test]
+fn what_the_driver_was_not_to_hear_of_it_does_not_hear_of_after_a_restart() {
+    let folder = tempfile::tempdir().unwrap();
+    let (journal, log) = (folder.path().join("journal"), folder.path().join("log"));
+    let (journal, command) = (journal.to_str().unwrap(), format!("echo ~A ~A >> {}", log.display()));
+    let mission = ["run", "tests/live/field.rmpl", "--speed", "20", "--like-original", "--journal", journal];
+    let mut mission = start(&[&mission[..], &["--driver-command", &command]].concat());
+    while lines(&log).is_empty() {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    std::thread::sleep(Duration::from_millis(100));
+    mission.kill().unwrap();
+    mission.wait().unwrap();
+    let mut resumed = start(&["resume", journal]);
+    writeln!(resumed.stdin.as_ref().unwrap(), "+UPLOAD::START+").unwrap();
+    let output = resumed.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let told: BTreeSet<String> = lines(&log).into_iter().collect();
+    assert_eq!(
+        told,
+        ["+FLY::START+ +UPLOAD::START+", "+LAND::START+ +LAND::END+"].map(str::to_string).into()
+    );
+}
+
+#[test]
+fn a_screen_that_must_be_and_cannot_is_an_error_before_anything_starts() {
+    let folder = tempfile::tempdir().unwrap();
+    let journal = folder.path().join("journal");
+    let output =
+        kirk(&["run", "tests/live/once.rmpl", "--screen", "always", "--journal", journal.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("standard input is not a terminal"), "{}", stderr(&output));
+    assert!(!journal.exists());
+}
+
+#[test]
+fn what_commands_of_the_driver_print_comes_in_whole_lines_with_their_event_before_them() {
+    // Both at the same time, in pieces that would mix.
+    let speak =
+        "for n in 1 2 3; do printf 'on'; sleep 0.03; printf 'ce '; done; echo; echo twice >&2; printf thrice";
+    for quiet in ["-v", "-q"] {
+        let arguments =
+            ["run", "examples/rmpl/morning-lecture.rmpl", "--driver-command", speak, "--speed", "50", quiet];
+        let output = start(&arguments).wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let told = stderr(&output);
+        for activity in ["eat-breakfast", "review-scheduling-notes", "pack-bag", "bike-to-lecture"] {
+            let lines: Vec<&str> =
+                told.lines().filter_map(|line| line.strip_prefix(&format!("{activity}:start | "))).collect();
+            assert_eq!(lines, ["once once once ", "twice", "thrice"], "{told}");
+        }
+        assert!(!stdout(&output).contains("once"));
+    }
+    // A child that speaks JSON has its standard error for people; what floods is counted.
+    let flood = "stdio:yes flood | head -100000 >&2; examples/drivers/robot.sh";
+    let output = start(&["run", "tests/live/once.rmpl", "--driver", flood, "--speed", "10"])
+        .wait_with_output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let flood = stderr(&output).lines().filter(|line| *line == "driver | flood").count();
+    assert!((100..2_000).contains(&flood), "{flood} lines");
+    assert!(stderr(&output).contains("lines more, not shown"), "{}", stderr(&output));
+}
+
 #[test]
 fn the_drivers_of_the_examples_execute_a_mission() {
     let mut drivers = vec!["stdio:examples/drivers/robot.sh"];

@@ -30,6 +30,15 @@ struct Rig {
 
 impl Rig {
     fn new(speed: &str) -> Rig {
+        Rig::with(&["--speed", speed])
+    }
+
+    fn with(options: &[&str]) -> Rig {
+        Rig::of(|mission| [&["run", mission][..], options].concat().into_iter().map(str::to_string).collect())
+    }
+
+    /// `arguments` for the file of a mission.
+    fn of(arguments: impl FnOnce(&str) -> Vec<String>) -> Rig {
         let folder = tempfile::tempdir().unwrap();
         let mission = folder.path().join("scan.json");
         std::fs::write(&mission, MISSION).unwrap();
@@ -39,9 +48,9 @@ impl Rig {
         let name = ptsname(&person, Vec::new()).unwrap();
         let open = || rustix::fs::open(&name, OFlags::RDWR | OFlags::NOCTTY, Mode::empty()).unwrap();
         let kirk = Command::new("setsid")
-            .args(["--ctty", env!("CARGO_BIN_EXE_kirk"), "run"])
-            .arg(&mission)
-            .args(["--format", "json", "--speed", speed])
+            .args(["--ctty", env!("CARGO_BIN_EXE_kirk")])
+            .args(arguments(mission.to_str().unwrap()))
+            .args(["--format", "json"])
             .env("TERM", "xterm")
             .stdin(File::from(open()))
             .stdout(File::create(folder.path().join("record.json")).unwrap())
@@ -152,4 +161,51 @@ fn the_mission_goes_on_when_the_terminal_goes_away() {
     let (status, record) = rig.end();
     assert!(status.success(), "{status}");
     assert_eq!(record["outcome"], "completed");
+}
+
+/// Whether a mission with these options, before a person at a terminal, is on a screen. It is over soon.
+fn has_screen(options: &[&str]) -> bool {
+    let mut rig = Rig::with(&[&["--speed", "100"], options].concat());
+    let (status, record) = rig.end();
+    assert!(status.success(), "{status}: {:?}", rig.seen);
+    assert_eq!(record["outcome"], "completed");
+    let (screen, lines) = (rig.seen.contains("\u{1b}[?1049h"), rig.seen.contains("go  dispatched"));
+    assert!(!(screen && lines), "{:?}", rig.seen);
+    screen
+}
+
+#[test]
+fn there_are_lines_with_the_options_of_the_original_and_a_screen_if_it_is_asked_for() {
+    assert!(has_screen(&[]));
+    assert!(has_screen(&["--tolerance", "1.0", "--verbose"]));
+    assert!(has_screen(&["--quiet"]), "quiet is another question");
+    assert!(!has_screen(&["--screen", "never"]));
+    for original in [&["--driver-command", "true"][..], &["--optimistic"], &["--like-original"]] {
+        assert!(!has_screen(original), "{original:?}");
+        assert!(!has_screen(&[original, &["--verbose"]].concat()), "{original:?}");
+        assert!(has_screen(&[original, &["--screen", "auto"]].concat()), "{original:?}");
+        assert!(has_screen(&[original, &["--screen", "always"]].concat()), "{original:?}");
+    }
+}
+
+#[test]
+fn a_mission_that_goes_on_is_shown_as_it_was_unless_something_else_is_asked_for() {
+    for (begun, resumed, screen) in
+        [("never", None, false), ("auto", None, true), ("never", Some("auto"), true)]
+    {
+        let folder = tempfile::tempdir().unwrap();
+        let journal = folder.path().join("journal").to_str().unwrap().to_string();
+        let mut rig = Rig::with(&["--screen", begun, "--journal", &journal, "--speed", "20"]);
+        while !std::fs::read(&journal).is_ok_and(|bytes| bytes.contains(&b'\n')) {
+            rig.look();
+        }
+        rig.kirk.kill().unwrap();
+        rig.kirk.wait().unwrap();
+        let mut arguments = vec!["resume".to_string(), journal];
+        arguments.extend(resumed.map(|when| format!("--screen={when}")));
+        let mut rig = Rig::of(|_| arguments);
+        let (status, _) = rig.end();
+        assert!(status.success(), "{status}: {:?}", rig.seen);
+        assert_eq!(rig.seen.contains("\u{1b}[?1049h"), screen, "{begun} {resumed:?}: {:?}", rig.seen);
+    }
 }

@@ -47,7 +47,20 @@ static TAKEN: AtomicBool = AtomicBool::new(false);
 pub(crate) fn is_there() -> bool {
     let dumb = std::env::var_os("TERM").is_none_or(|name| name.is_empty() || name == "dumb");
     let shown = io::stdout().is_terminal() || io::stderr().is_terminal();
-    !dumb && shown && io::stdin().is_terminal() && !is_in_background() && open().is_ok()
+    !dumb && shown && obstacle().is_none()
+}
+
+/// Why no screen can be shown whatever one wants, if none can.
+pub(crate) fn obstacle() -> Option<&'static str> {
+    if !io::stdin().is_terminal() {
+        Some("standard input is not a terminal")
+    } else if is_in_background() {
+        Some("the terminal is somebody else's now")
+    } else if open().is_err() {
+        Some("the terminal cannot be opened")
+    } else {
+        None
+    }
 }
 
 /// True if standard input is a terminal that is somebody else's now: who reads from it there is stopped for that.

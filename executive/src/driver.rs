@@ -4,21 +4,25 @@
 //! `failed`; it never tries again by itself, that is the executive's to decide.
 
 mod command;
+mod output;
 mod stdio;
 mod url;
 
 use std::io;
+use std::sync::mpsc::Sender;
 use std::thread::JoinHandle;
 use std::time::Duration as Real;
 
 pub(crate) use command::shell;
 use kirk_runtime::{Execution, Handover, Sending, original_spelling};
+pub use output::Said;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 
 use crate::desk::Desk;
+use output::Ear;
 
 /// Which driver.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -37,8 +41,6 @@ pub enum Driver {
 pub(crate) struct Treatment {
     /// How long an attempt may take, really.
     pub(crate) limit: Real,
-    /// True if what commands print would spoil the screen.
-    pub(crate) silent: bool,
 }
 
 /// A driver at work.
@@ -65,17 +67,28 @@ impl Driver {
         }
     }
 
-    pub(crate) fn start(&self, treatment: Treatment, greeting: Value, desk: Desk) -> io::Result<Running> {
+    /// `said` hears what its commands print.
+    pub(crate) fn start(
+        &self,
+        treatment: Treatment,
+        greeting: Value,
+        desk: Desk,
+        said: Sender<Said>,
+    ) -> io::Result<Running> {
         let (orders, inbox) = unbounded_channel();
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
         let driver = self.clone();
         let thread = std::thread::Builder::new().name("driver".into()).spawn(move || {
             runtime.block_on(async {
+                let (ear, silence) = Ear::new(said);
                 match driver {
-                    Driver::Command(template) => command::run(template, treatment, inbox, desk).await,
-                    Driver::Stdio(command) => stdio::run(command, treatment, greeting, inbox, desk).await,
+                    Driver::Command(template) => command::run(template, treatment, inbox, desk, &ear).await,
+                    Driver::Stdio(command) => {
+                        stdio::run(command, treatment, greeting, inbox, desk, &ear).await;
+                    }
                     Driver::Url(url) => url::run(url, treatment, inbox, desk).await,
                 }
+                silence.come(ear).await;
             });
             // Attempts nobody waits for any more do not keep the program from ending.
             runtime.shutdown_background();

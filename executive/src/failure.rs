@@ -35,7 +35,7 @@ pub(crate) fn unrecorded(execution: &Execution, detail: &str) -> Failure {
 pub(crate) fn tell(command: &str, program: &str, failure: &Failure) {
     let Ok(runtime) = tokio::runtime::Builder::new_current_thread().enable_all().build() else { return };
     runtime.block_on(async {
-        let mut command = shell(command, false);
+        let mut command = shell(command);
         command
             .env("KIRK_PROGRAM", program)
             .env("KIRK_REASON", &failure.reason)

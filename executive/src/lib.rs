@@ -15,7 +15,9 @@
 //! let mission = Mission { program: "a drive".into(), network, plan, handovers };
 //! // A hundred times as fast as the world, without a driver, a journal, or a port for news.
 //! let options = Options { speed: 100.0, ..Options::default() };
-//! let ready = begin(mission, options, None, false).expect("nothing to open");
+//! // Nobody listens to what commands of a driver print.
+//! let (said, _) = std::sync::mpsc::channel();
+//! let ready = begin(mission, options, None, said).expect("nothing to open");
 //! // Nobody says that the drive is over, so at 11 it must be.
 //! let ended = ready.run(false);
 //! assert_eq!(ended.execution.makespan.0.to_string(), "11");
@@ -53,10 +55,10 @@ mod snapshot;
 
 pub use clock::{Clock, clocks};
 pub use desk::{AnswerNews, Desk, Ignored, Reply};
-pub use driver::Driver;
+pub use driver::{Driver, Said};
 pub use happening::Happening;
 pub use lateness::Lateness;
-pub use mission::{Http, Mission, Options, Ready, Resumption, begin, resume};
+pub use mission::{Http, Mission, Options, Ready, Resumption, Screen, begin, resume};
 pub use run::Ended;
 pub use signals::stop_on_signals;
 pub use snapshot::{Next, Possible, Snapshot};

@@ -2,7 +2,7 @@
 
 use std::net::TcpListener;
 use std::path::Path;
-use std::sync::mpsc::Receiver;
+use std::sync::mpsc::{Receiver, Sender};
 use std::time::Duration as Real;
 
 use kirk_network::{Duration, Network, Time};
@@ -14,7 +14,7 @@ use serde_json::value::RawValue;
 
 use crate::clock::{Clock, clocks};
 use crate::desk::{Desk, Message};
-use crate::driver::{Driver, Running, Treatment};
+use crate::driver::{Driver, Running, Said, Treatment};
 use crate::file::JournalFile;
 
 /// What is executed.
@@ -48,6 +48,22 @@ pub struct Options {
     pub http: Option<Http>,
     /// A shell command that is run if the mission fails.
     pub on_failure: Option<String>,
+    /// Whether the mission is to be shown on a screen; that is up to whoever shows it.
+    #[serde(default)]
+    pub screen: Screen,
+}
+
+/// Whether a mission is shown on a screen of the terminal, or by lines.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Screen {
+    /// If somebody sits before a terminal.
+    #[default]
+    Auto,
+    /// Lines in any case.
+    Never,
+    /// A screen, or nothing is started.
+    Always,
 }
 
 impl Default for Options {
@@ -61,6 +77,7 @@ impl Default for Options {
             driver_timeout: 10.0,
             http: None,
             on_failure: None,
+            screen: Screen::Auto,
         }
     }
 }
@@ -104,7 +121,8 @@ const PREPARATION: Real = Real::from_millis(50);
 /// How long to wait, really, before the driver is tried again, at first and at most.
 const PATIENCE: (Real, Real) = (Real::from_millis(100), Real::from_secs(2));
 
-/// Prepares a mission: opens the journal, the port and the driver. Its time zero is a moment later.
+/// Prepares a mission: opens the journal, the port and the driver. Its time zero is a moment later. `said` hears what commands
+/// of the driver print.
 ///
 /// # Errors
 /// A sentence that says what cannot be opened. Then nothing has been started.
@@ -112,7 +130,7 @@ pub fn begin(
     mission: Mission,
     options: Options,
     journal: Option<&Path>,
-    silent: bool,
+    said: Sender<Said>,
 ) -> Result<Ready, String> {
     if let Some(driver) = &options.driver {
         driver.check(&mission.handovers)?;
@@ -132,18 +150,18 @@ pub fn begin(
             Some(JournalFile::create(path, &line)?)
         }
     };
-    make(executive, options, clock, journal, listener, &run, silent, false)
+    make(executive, options, clock, journal, listener, &run, said, false)
 }
 
 /// Goes on with the mission of a journal. Time has passed meanwhile as the clocks of the machine say, or it is `at` now.
-/// `note` is told what a person should know.
+/// `said` hears what commands of the driver print, `note` is told what a person should know.
 ///
 /// # Errors
 /// A sentence that says why that is not possible.
 pub fn resume(
     path: &Path,
     at: Option<Time>,
-    silent: bool,
+    said: Sender<Said>,
     mut note: impl FnMut(String),
 ) -> Result<Resumption, String> {
     let (mut file, journal) = JournalFile::open(path)?;
@@ -201,7 +219,7 @@ pub fn resume(
     executive.handle_resumed(now, &unsent);
     let clock = Clock::starting(now, options.speed);
     let run = start.run.clone();
-    make(executive, options, clock, Some(file), listener, &run, silent, true)
+    make(executive, options, clock, Some(file), listener, &run, said, true)
         .map(|ready| Resumption::Ready(Box::new(ready)))
 }
 
@@ -209,6 +227,11 @@ impl Ready {
     /// Where to hand in news and to ask how things are.
     pub fn desk(&self) -> Desk {
         self.desk.clone()
+    }
+
+    /// How it is executed.
+    pub fn options(&self) -> &Options {
+        &self.options
     }
 
     /// The network that is executed.
@@ -263,7 +286,7 @@ fn make(
     mut journal: Option<JournalFile>,
     listener: Option<Ear>,
     run: &str,
-    silent: bool,
+    said: Sender<Said>,
     resumed: bool,
 ) -> Result<Ready, String> {
     let (desk, inbox) = Desk::new(executive.network(), clock);
@@ -277,11 +300,11 @@ fn make(
     }
     let greeting =
         json!({ "protocol": "kirk-driver/1", "run": run, "speed": options.speed, "resumed": resumed });
-    let treatment = Treatment { limit: Real::from_secs_f64(options.driver_timeout), silent };
+    let treatment = Treatment { limit: Real::from_secs_f64(options.driver_timeout) };
     let driver = match &options.driver {
         None => None,
         Some(driver) => {
-            let started = driver.start(treatment, greeting, desk.clone());
+            let started = driver.start(treatment, greeting, desk.clone(), said);
             Some(started.map_err(|error| format!("the driver cannot be started: {error}"))?)
         }
     };

@@ -55,6 +55,28 @@ pub fn handovers(network: &Network, activities: Option<&[String]>, scope: Scope)
     all
 }
 
+/// Leaves out what starts at an event that Nature decides, as the original Kirk does: its middleware begins such activities by
+/// itself when it reports the event.
+pub fn leave_out_natures(network: &Network, handovers: &mut Vec<Handover>) {
+    handovers.retain(|handover| network.link_of(handover.event).is_none());
+}
+
+/// Names as companion the event that the end of an activity is one with, as the original Kirk does: it knows an event of
+/// several names by the start among them (thesis, B.1: `take-pictures:end` becomes `eat-snack:start`). Of several starts the
+/// first is taken.
+pub fn merge_companions(network: &Network, handovers: &mut [Handover]) {
+    let starts = handovers.iter().filter(|handover| handover.companion.is_some());
+    let mut start_of: Vec<Option<String>> = vec![None; network.events().len()];
+    for Handover { event, name, .. } in starts {
+        start_of[event.index()].get_or_insert_with(|| name.clone());
+    }
+    for companion in handovers.iter_mut().filter_map(|handover| handover.companion.as_mut()) {
+        if let Some(start) = network.find(companion).and_then(|event| start_of[event.index()].clone()) {
+            *companion = start;
+        }
+    }
+}
+
 /// The spelling of the original Kirk: `upload-a:start` is `+UPLOAD-A::START+`.
 pub fn original_spelling(name: &str) -> String {
     format!("+{}+", name.replacen(':', "::", 1).to_uppercase())
@@ -73,6 +95,41 @@ mod tests {
             assert_eq!(normal_name(&original_spelling(name)), name);
         }
         assert_eq!(original_spelling("upload-a:start"), "+UPLOAD-A::START+");
+    }
+
+    /// A flight of Nature's, and without slack after it an upload of ours and the landing.
+    #[test]
+    fn as_the_original_does_starts_of_natures_are_left_out_and_companions_are_named_by_what_follows() {
+        let network = json::read(
+            r#"{"format": "kirk-network/1", "origin": "fly:start",
+                "events": ["fly:start", {"id": "fly:end", "names": ["fly:end", "upload:start", "talk:start"]},
+                           {"id": "upload:end", "names": ["upload:end", "land:start"]}, "land:end", "talk:end"],
+                "requirements": [{"from": "upload:start", "to": "upload:end", "lower": 30, "upper": 40},
+                                 {"from": "land:start", "to": "land:end", "lower": 1, "upper": 5},
+                                 {"from": "talk:start", "to": "talk:end", "lower": 1, "upper": 5}],
+                "contingents": [{"from": "fly:start", "to": "fly:end", "lower": 1, "upper": 600}]}"#,
+        );
+        let network = network.unwrap();
+        let activities = ["fly", "upload", "land", "talk"].map(str::to_string);
+        let told = |handovers: &[Handover]| -> Vec<String> {
+            let told = |h: &Handover| format!("{} {}", h.name, h.companion.as_deref().unwrap_or("NIL"));
+            handovers.iter().map(told).collect()
+        };
+        let mut all = handovers(&network, Some(&activities), Scope::All);
+        merge_companions(&network, &mut all);
+        let merged = [
+            "fly:start upload:start",
+            "upload:start land:start",
+            "talk:start talk:end",
+            "upload:end NIL",
+            "land:start land:end",
+            "land:end NIL",
+            "talk:end NIL",
+        ];
+        assert_eq!(told(&all), merged);
+        leave_out_natures(&network, &mut all);
+        let ours = [merged[0], merged[3], merged[4], merged[5], merged[6]];
+        assert_eq!(told(&all), ours);
     }
 
     #[test]

@@ -64,7 +64,7 @@ pub mod replay;
 pub mod simulate;
 pub mod verify;
 
-pub use activity::{Handover, Scope, handovers, original_spelling};
+pub use activity::{Handover, Scope, handovers, leave_out_natures, merge_companions, original_spelling};
 pub use checkpoint::Checkpoint;
 pub use dispatcher::{Adoption, Dispatch, Dispatcher, Missed, Reception, Settings, Strategy};
 pub use execution::{Execution, Failure, How, Outcome, Row};

@@ -7,6 +7,7 @@ use rustix::process::{Pid, Signal, kill_process_group};
 use tokio::process::{Child, Command};
 use tokio::sync::mpsc::UnboundedReceiver;
 
+use super::output::Ear;
 use super::{Order, Treatment, next};
 use crate::desk::{Desk, Failed};
 
@@ -43,13 +44,14 @@ pub(super) async fn run(
     treatment: Treatment,
     mut inbox: UnboundedReceiver<Order>,
     desk: Desk,
+    ear: &Ear,
 ) {
     let local = tokio::task::LocalSet::new();
     let work = async {
         while let Some(sending) = next(&mut inbox).await {
-            let (template, desk) = (template.clone(), desk.clone());
+            let (template, desk, ear) = (template.clone(), desk.clone(), ear.clone());
             tokio::task::spawn_local(async move {
-                match attempt(&template, &sending, treatment).await {
+                match attempt(&template, &sending, treatment, &ear).await {
                     Ok(()) => desk.executed(sending.id, None),
                     Err(failure) => desk.failed(sending.id, failure),
                 }
@@ -59,13 +61,17 @@ pub(super) async fn run(
     local.run_until(work).await;
 }
 
-async fn attempt(template: &str, sending: &Sending, treatment: Treatment) -> Result<(), Failed> {
+async fn attempt(template: &str, sending: &Sending, treatment: Treatment, ear: &Ear) -> Result<(), Failed> {
     let event = original_spelling(&sending.name);
     let companion = sending.companion.as_deref().map_or("NIL".to_string(), original_spelling);
-    let mut command = shell(&fill(template, &event, &companion), treatment.silent);
+    let cannot = |error| Failed::surely(format!("the shell cannot be started: {error}"));
+    let (output, errors) = ear.listen(&sending.name).map_err(cannot)?;
+    let mut command = shell(&fill(template, &event, &companion));
+    command.stdout(output).stderr(errors);
     command.env("KIRK_EVENT", event).env("KIRK_COMPANION", companion).env("KIRK_DISPATCH_ID", &sending.id);
-    let mut child =
-        command.spawn().map_err(|error| Failed::surely(format!("the shell cannot be started: {error}")))?;
+    let mut child = command.spawn().map_err(cannot)?;
+    // It holds the pipe open as well.
+    drop(command);
     match tokio::time::timeout(treatment.limit, child.wait()).await {
         Ok(Ok(status)) if status.success() => Ok(()),
         Ok(Ok(status)) => Err(Failed::surely(format!("the command ended with {status}"))),
@@ -79,11 +85,11 @@ async fn attempt(template: &str, sending: &Sending, treatment: Treatment) -> Res
     }
 }
 
-/// A command of the shell, in a process group of its own. What it prints goes to standard error, as standard output is ours.
-pub(crate) fn shell(text: &str, silent: bool) -> Command {
+/// A command of the shell, in a process group of its own. What it prints goes to standard error unless somebody listens, as
+/// standard output is ours.
+pub(crate) fn shell(text: &str) -> Command {
     let mut command = Command::new("sh");
-    let output = || if silent { Stdio::null() } else { Stdio::from(std::io::stderr()) };
-    command.arg("-c").arg(text).stdin(Stdio::null()).stdout(output()).stderr(output());
+    command.arg("-c").arg(text).stdin(Stdio::null()).stdout(std::io::stderr()).stderr(std::io::stderr());
     command.process_group(0).kill_on_drop(false);
     command
 }

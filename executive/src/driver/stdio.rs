@@ -1,5 +1,5 @@
 //! One long-lived child that speaks JSON in lines: it gets dispatches on its standard input, and answers and reports
-//! observations on its standard output. What it writes to standard error is its own affair.
+//! observations on its standard output. What it writes to standard error is for people.
 //!
 //! A child that ends is started again. One that does not answer in time is ended, and started again.
 
@@ -15,6 +15,7 @@ use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use tokio::time::{Instant, sleep_until, timeout};
 
 use super::command::{kill, shell};
+use super::output::Ear;
 use super::{Order, Treatment, dispatch};
 use crate::desk::{Desk, Failed};
 
@@ -74,6 +75,7 @@ pub(super) async fn run(
     greeting: Value,
     mut inbox: UnboundedReceiver<Order>,
     desk: Desk,
+    ear: &Ear,
 ) {
     let (answers, mut to_child) = unbounded_channel::<Value>();
     let mut pending: HashMap<String, Instant> = HashMap::new();
@@ -83,7 +85,7 @@ pub(super) async fn run(
     let mut last_end = "it is not started yet".to_string();
     loop {
         if conversation.is_none() && Instant::now() >= starts_at {
-            match start(&command, treatment.silent) {
+            match start(&command, ear) {
                 Ok(started) => {
                     conversation = Some(started);
                     tell(&mut conversation, &json!({ "start": greeting })).await;
@@ -179,9 +181,10 @@ fn fail_all(pending: &mut HashMap<String, Instant>, desk: &Desk, reason: &str) {
     }
 }
 
-fn start(command: &str, silent: bool) -> Result<Conversation, String> {
-    let mut command: Command = shell(command, silent);
-    command.stdin(Stdio::piped()).stdout(Stdio::piped()).kill_on_drop(true);
+fn start(command: &str, ear: &Ear) -> Result<Conversation, String> {
+    let (_, errors) = ear.listen("driver").map_err(|error| error.to_string())?;
+    let mut command: Command = shell(command);
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(errors).kill_on_drop(true);
     let mut child = command.spawn().map_err(|error| error.to_string())?;
     match (child.stdin.take(), child.stdout.take()) {
         (Some(input), Some(output)) => Ok(Conversation {

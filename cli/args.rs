@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use jiff::{SignedDuration, Timestamp};
 
 /// Compiles RMPL control programs to temporal networks with uncertainty, proves that they can always be executed (or
 /// shows which lines make it impossible), and executes them.
@@ -178,6 +179,13 @@ pub(crate) struct Live {
     /// Run the clock so many times faster: rehearsals, tests.
     #[arg(long, default_value = "1", value_name = "X", value_parser = speed, conflicts_with = "simulate")]
     pub(crate) speed: f64,
+    /// Let the clock of the mission stand until the driver first confirms, for so many seconds at most.
+    #[arg(long, value_name = "S", value_parser = positive, conflicts_with_all = ["simulate", "start_at"])]
+    pub(crate) wait_for_driver: Option<f64>,
+    /// When the clock of the mission starts: a time of the calendar (RFC 3339, such as 2030-05-20T14:00:00Z), or from now on
+    /// (+30s, +5m). Several executives may share it.
+    #[arg(long, value_name = "TIME", value_parser = moment, conflicts_with = "simulate")]
+    pub(crate) start_at: Option<i64>,
     /// Record everything there, so that `kirk resume` can go on after whatever interrupts the mission.
     #[arg(long, value_name = "FILE", conflicts_with = "simulate")]
     pub(crate) journal: Option<PathBuf>,
@@ -269,6 +277,16 @@ fn positive(text: &str) -> Result<f64, String> {
         number if number >= 1e-6 => Ok(number),
         _ => Err("expected a number greater than 0".to_string()),
     }
+}
+
+/// A time of the calendar, in microseconds since 1970.
+fn moment(text: &str) -> Result<i64, String> {
+    let moment = match text.strip_prefix('+') {
+        Some(wait) => wait.parse::<SignedDuration>().and_then(|wait| Timestamp::now().checked_add(wait)),
+        None => text.parse::<Timestamp>(),
+    };
+    let expected = "expected a time with its offset, such as 2030-05-20T14:00:00Z or ...+02:00, or how long from now: +30s";
+    moment.map(Timestamp::as_microsecond).map_err(|error| format!("{error}; {expected}"))
 }
 
 fn speed(text: &str) -> Result<f64, String> {

@@ -3,8 +3,9 @@
 use std::io;
 use std::sync::mpsc::{Receiver, channel};
 
+use jiff::Timestamp;
 use kirk_compiler::episode::{Episode, Kind};
-use kirk_executive::{Driver, Ended, Http, Mission, Options, Ready, Resumption, Said, Screen, begin};
+use kirk_executive::{Driver, Ended, Http, Mission, Options, Ready, Resumption, Said, Screen, Zero, begin};
 use kirk_network::{Duration, Time};
 use kirk_runtime::{Execution, Outcome, Plan, Scope, handovers, leave_out_natures, merge_companions};
 
@@ -131,6 +132,9 @@ fn finish(
     if let (Some(address), false) = (&address, common.quiet) {
         remark(address);
     }
+    if let (Some(zero), false) = (zero(ready.options()), common.quiet || screen) {
+        remark(&zero);
+    }
     let desk = ready.desk();
     kirk_executive::stop_on_signals(desk.clone());
     let watching = if screen {
@@ -169,6 +173,19 @@ fn screen(when: ScreenWhen) -> Screen {
         ScreenWhen::Auto => Screen::Auto,
         ScreenWhen::Never => Screen::Never,
         ScreenWhen::Always => Screen::Always,
+    }
+}
+
+/// When the mission begins, if that is not at once.
+fn zero(options: &Options) -> Option<String> {
+    match options.zero {
+        Zero::Soon => None,
+        Zero::At(calendar) => {
+            Timestamp::from_microsecond(calendar).ok().map(|at| format!("time zero of the mission is {at}"))
+        }
+        Zero::DriverConfirms { within } => Some(format!(
+            "the clock of the mission stands until the driver first confirms, for {within} s at most"
+        )),
     }
 }
 
@@ -221,6 +238,11 @@ fn options(arguments: &Run) -> Result<Options, String> {
         http,
         on_failure: live.on_failure.clone(),
         screen: screen(arguments.screen()),
+        zero: match (live.start_at, live.wait_for_driver) {
+            (Some(calendar), _) => Zero::At(calendar),
+            (None, Some(within)) => Zero::DriverConfirms { within },
+            (None, None) => Zero::Soon,
+        },
     })
 }
 

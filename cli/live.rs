@@ -61,7 +61,7 @@ const TICK_MILLIS: i64 = 100;
 pub(crate) fn run(desk: &Desk, options: Options, said: &Receiver<Said>) -> io::Result<End> {
     let mut screen = Screen::up(options.color)?;
     let started = Instant::now();
-    let now = || Moment { mission: desk.clock().now(), real: started.elapsed() };
+    let now = || Moment { mission: desk.clock().countdown(), real: started.elapsed() };
     let mut happenings = desk.listen();
     let (replies, answers) = channel();
     let mut look = Look::default();

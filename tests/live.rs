@@ -216,7 +216,7 @@ fn what_the_driver_was_not_to_hear_of_it_does_not_hear_of_after_a_restart() {
     std::thread::sleep(Duration::from_millis(100));
     mission.kill().unwrap();
     mission.wait().unwrap();
-    let mut resumed = start(&["resume", journal]);
+    let resumed = start(&["resume", journal]);
     writeln!(resumed.stdin.as_ref().unwrap(), "+UPLOAD::START+").unwrap();
     let output = resumed.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
@@ -265,6 +265,144 @@ fn what_commands_of_the_driver_print_comes_in_whole_lines_with_their_event_befor
     let flood = stderr(&output).lines().filter(|line| *line == "driver | flood").count();
     assert!((100..2_000).contains(&flood), "{flood} lines");
     assert!(stderr(&output).contains("lines more, not shown"), "{}", stderr(&output));
+}
+
+/// A mission whose driver comes up only when a file is there, and the log of the driver.
+fn waiting(folder: &Path, options: &[&str]) -> Child {
+    let driver = format!("test -e {0}/up && echo $KIRK_DISPATCH_ID >> {0}/log", folder.display());
+    let journal = folder.join("journal").display().to_string();
+    let all =
+        ["run", "tests/live/field.rmpl", "--speed", "10", "--format", "json", "--driver-command", &driver];
+    start(&[&all[..], &["--journal", &journal], options].concat())
+}
+
+#[test]
+fn the_clock_of_the_mission_starts_when_the_driver_first_confirms() {
+    // Nobody is there for seven seconds of the mission, and its first event must be executed at its beginning.
+    for patient in [false, true] {
+        let folder = tempfile::tempdir().unwrap();
+        let mut kirk = waiting(folder.path(), if patient { &["--wait-for-driver", "60"] } else { &[] });
+        std::thread::sleep(Duration::from_millis(400));
+        // Too early: what has not begun cannot have ended.
+        let _ = writeln!(kirk.stdin.as_mut().unwrap(), "fly:end");
+        std::thread::sleep(Duration::from_millis(300));
+        std::fs::write(folder.path().join("up"), "").unwrap();
+        let output = kirk.wait_with_output().unwrap();
+        let execution: Value = serde_json::from_str(&stdout(&output)).unwrap();
+        if !patient {
+            assert_eq!(execution["failure"]["reason"], "driver-failed", "{execution}");
+            continue;
+        }
+        completed(&output);
+        assert_eq!(rows(&execution)["fly:start"], (Some(0.0), "dispatched".to_string()));
+        assert_eq!(rows(&execution)["fly:end"], (Some(60.0), "imagined".to_string()));
+        let told = stderr(&output);
+        assert!(told.contains("fly:end  ignored: the mission has not begun"), "{told}");
+        assert_eq!(told.matches("fly:start  not confirmed: the command ended with").count(), 1, "{told}");
+        let journal = folder.path().join("journal");
+        assert_eq!(kirk_replay(journal.to_str().unwrap()), execution);
+        assert_eq!(lines(&folder.path().join("log")).len(), 3);
+    }
+}
+
+#[test]
+fn a_driver_that_does_not_come_up_in_time_ends_the_mission_before_it_begins() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = waiting(folder.path(), &["--wait-for-driver", "0.5"]).wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let execution: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(execution["failure"]["reason"], "driver-failed");
+    let detail = execution["failure"]["detail"].as_str().unwrap();
+    assert!(detail.starts_with("the driver did not confirm `fly:start` within 0.5 s"), "{detail}");
+    let journal = folder.path().join("journal").display().to_string();
+    let again = kirk(&["resume", &journal, "--format", "json"]);
+    assert_eq!(again.status.code(), Some(1), "{}", stderr(&again));
+    assert_eq!(serde_json::from_str::<Value>(&stdout(&again)).unwrap(), execution);
+}
+
+#[test]
+fn a_mission_that_was_killed_before_its_clock_started_waits_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let journal = folder.path().join("journal");
+    let mut mission = waiting(folder.path(), &["--wait-for-driver", "60"]);
+    for _ in 0..3 {
+        while !std::fs::read(&journal).is_ok_and(|bytes| bytes.contains(&b'\n')) {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        std::thread::sleep(Duration::from_millis(300));
+        mission.kill().unwrap();
+        mission.wait().unwrap();
+        // A command of the driver that is just starting may hold the journal a moment longer.
+        std::thread::sleep(Duration::from_millis(300));
+        mission = start(&["resume", journal.to_str().unwrap(), "--format", "json"]);
+    }
+    std::thread::sleep(Duration::from_millis(500));
+    std::fs::write(folder.path().join("up"), "").unwrap();
+    let output = mission.wait_with_output().unwrap();
+    let execution = completed(&output);
+    assert_eq!(rows(&execution)["fly:start"], (Some(0.0), "dispatched".to_string()));
+    assert_eq!(kirk_replay(journal.to_str().unwrap()), execution);
+    let told = lines(&folder.path().join("log"));
+    assert_eq!(told.iter().collect::<BTreeSet<_>>().len(), 3, "{told:?}");
+}
+
+/// Seconds since 1970.
+fn seconds_now() -> f64 {
+    std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap().as_secs_f64()
+}
+
+#[test]
+fn several_executives_share_time_zero_also_one_that_was_killed_before() {
+    let folder = tempfile::tempdir().unwrap();
+    let zero = seconds_now().ceil() + 3.0;
+    let date = Command::new("date").args(["-u", "-d", &format!("@{zero}"), "+%FT%TZ"]).output().unwrap();
+    let date = stdout(&date).trim().to_string();
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let begin = |name: &str| {
+        let driver = format!("date +%s.%N >> {}", path(name));
+        let journal = path(&format!("{name}-journal"));
+        let arguments =
+            ["run", "tests/live/field.rmpl", "--speed", "20", "--format", "json", "--journal", &journal];
+        start(&[&arguments[..], &["--driver-command", &driver, "--start-at", &date]].concat())
+    };
+    let (one, mut two) = (begin("one"), begin("two"));
+    std::thread::sleep(Duration::from_millis(700));
+    two.kill().unwrap();
+    two.wait().unwrap();
+    let two = start(&["resume", &path("two-journal"), "--format", "json"]);
+    let mut three = begin("three");
+    writeln!(three.stdin.as_mut().unwrap(), "fly:end").unwrap();
+    for (name, kirk) in [("one", one), ("two", two), ("three", three)] {
+        let output = kirk.wait_with_output().unwrap();
+        let execution = completed(&output);
+        assert_eq!(rows(&execution)["fly:start"], (Some(0.0), "dispatched".to_string()));
+        assert_eq!(rows(&execution)["fly:end"], (Some(60.0), "imagined".to_string()), "news came too early");
+        let first: f64 = lines(&folder.path().join(name))[0].parse().unwrap();
+        assert!(
+            (zero..zero + 0.5).contains(&first),
+            "{name} began at {first}, not at {zero}: {}",
+            stderr(&output)
+        );
+    }
+}
+
+#[test]
+fn a_beginning_that_makes_no_sense_is_refused() {
+    for (options, why) in [
+        (&["--wait-for-driver", "5"][..], "there is none"),
+        (&["--wait-for-driver", "0", "--driver-command", "true"], "greater than 0"),
+        (&["--wait-for-driver", "5", "--driver-command", "true", "--start-at", "+5s"], "cannot be used with"),
+        (&["--start-at", "2020-01-01T00:00:00Z"], "has to lie ahead"),
+        (&["--start-at", "2040-01-01T00:00:00"], "expected a time with its offset"),
+        (&["--start-at", "soon"], "expected a time with its offset"),
+        (&["--start-at", "+soon"], "expected a time with its offset"),
+        (&["--start-at=+0s"], "has to lie ahead"),
+        (&["--start-at=+5s", "--simulate"], "cannot be used with"),
+    ] {
+        let output = kirk(&[&["run", "tests/live/once.rmpl"][..], options].concat());
+        assert_eq!(output.status.code(), Some(2), "{options:?}: {}", stderr(&output));
+        assert!(stderr(&output).contains(why), "{options:?}: {}", stderr(&output));
+    }
 }
 
 #[test]

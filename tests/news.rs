@@ -60,6 +60,21 @@ impl Running {
     }
 }
 
+#[test]
+fn before_time_zero_nothing_has_happened_and_nothing_is_heard() {
+    let arguments = ["run", "tests/live/field.rmpl", "--start-at", "+2s", "--speed", "20"];
+    let running = Running::start(&arguments);
+    let mut stream = BufReader::new(TcpStream::connect(running.address).unwrap());
+    let (status, body) = ask(&mut stream, "GET /state", b"").unwrap();
+    let state: Value = serde_json::from_str(&body).unwrap();
+    assert_eq!((status, &state["outcome"], &state["rows"]), (200, &json!("running"), &json!([])));
+    let (status, body) = ask(&mut stream, "POST /", br#"{"event-ids": ["fly:end"]}"#).unwrap();
+    assert_eq!((status, body.contains("the mission has not begun")), (200, true), "{body}");
+    let execution = running.end();
+    let end = execution["rows"].as_array().unwrap().iter().find(|row| row["event"] == "fly:end").unwrap();
+    assert_eq!((&end["time"], &end["how"]), (&json!(60), &json!("imagined")));
+}
+
 /// Sends a request on a connection that stays open, and returns the status and the body of the answer.
 fn ask(stream: &mut BufReader<TcpStream>, request: &str, body: &[u8]) -> std::io::Result<(u16, String)> {
     let head = format!("{request} HTTP/1.1\r\nHost: localhost\r\nContent-Length: {}\r\n\r\n", body.len());

@@ -38,6 +38,7 @@ fn what_belongs_in_one_place_is_named_in_one_place() {
         ("hyper", "executive"),
         ("subtle", "executive"),
         ("crossterm", "."),
+        ("jiff", "."),
         ("ratatui", "."),
         ("signal-hook", "."),
     ] {

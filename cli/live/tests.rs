@@ -2,7 +2,7 @@
 
 use std::time::Duration as Real;
 
-use kirk_executive::{AnswerNews, Happening, Ignored, Next, Possible, Snapshot};
+use kirk_executive::{AnswerNews, Happening, Ignored, Next, Possible, Snapshot, Waits};
 use kirk_network::json::{Seconds, seconds};
 use kirk_network::{Duration, Time};
 use kirk_runtime::{How, Outcome, Pending, Row};
@@ -57,6 +57,7 @@ fn mission() -> Snapshot {
             possible("battery-charged:end", 12, Some(40)),
             possible("tea:end", 3, Some(20)),
         ],
+        waits: None,
         pending: vec![
             Pending {
                 name: "camera-on:start".to_string(),
@@ -172,6 +173,35 @@ fn names_cannot_send_commands_to_the_terminal() {
     let cells = screen.buffer().content();
     assert!(cells.iter().all(|cell| !cell.symbol().contains(char::is_control)));
     assert!(cells.iter().any(|cell| cell.symbol() == "x"));
+}
+
+#[test]
+fn before_time_zero_it_is_said_what_is_waited_for() {
+    let (rows, possible, pending) = (Vec::new(), Vec::new(), Vec::new());
+    let before =
+        Snapshot { rows, possible, pending, next: None, waits: Some(Waits::Hour), at: at(0), ..mission() };
+    let head = |state: &State, now: i64, width: u16| {
+        let mut terminal = Terminal::new(TestBackend::new(width, 3)).unwrap();
+        terminal.draw(|frame| _ = view(state, at(now), false, frame.buffer_mut())).unwrap();
+        let lines = terminal.backend().to_string().replace('"', "");
+        lines.lines().take(2).map(|line| line.trim_end().to_string()).collect::<Vec<_>>()
+    };
+    let hour = seen(before.clone());
+    assert_eq!(
+        head(&hour, -75, 70),
+        [
+            " main  -75 s  waiting                            ? help   Ctrl-C stop",
+            "next: the mission begins in 75 s"
+        ]
+    );
+    let driver = seen(Snapshot { waits: Some(Waits::Driver("fly:start".to_string())), ..before });
+    assert_eq!(
+        head(&driver, 0, 70),
+        [
+            " main  0 s  waiting                              ? help   Ctrl-C stop",
+            "next: the mission begins when the driver has confirmed fly:start"
+        ]
+    );
 }
 
 #[test]

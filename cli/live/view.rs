@@ -1,7 +1,7 @@
 //! What the screen shows: a function of what is known, the moment and the size. ASCII but for names, so that any
 //! terminal and any encoding will do; colours only underline what words say.
 
-use kirk_executive::{Next, Possible, Snapshot};
+use kirk_executive::{Next, Possible, Snapshot, Waits};
 use kirk_network::json::{Seconds, seconds};
 use kirk_network::{Duration, Time};
 use kirk_runtime::{How, Outcome, Pending, Row};
@@ -71,6 +71,7 @@ impl View<'_> {
     fn header(&self, snapshot: &Snapshot, wide: usize) -> Line<'static> {
         let state = match snapshot.outcome {
             _ if self.state.stopping => "stopping",
+            Outcome::Running if snapshot.waits.is_some() => "waiting",
             Outcome::Running => "running",
             Outcome::Completed => "completed",
             Outcome::Failed => "failed",
@@ -94,6 +95,13 @@ impl View<'_> {
         match (self.state.question(), &snapshot.failure, &snapshot.next) {
             (Some(question), ..) => lines(question, Style::new().add_modifier(Modifier::REVERSED)),
             (_, Some(failure), _) => lines(&failure.detail, self.style(Color::Red)),
+            _ if snapshot.waits.is_some() => {
+                let until = match &snapshot.waits {
+                    Some(Waits::Driver(event)) => format!("when the driver has confirmed {event}"),
+                    Some(Waits::Hour) | None => format!("in {} s", self.seconds_to(Time::ZERO)),
+                };
+                lines(&format!("next: the mission begins {until}"), Style::new())
+            }
             (_, _, Some(next)) => vec![self.next(next, wide)],
             _ if snapshot.outcome != Outcome::Running => Vec::new(),
             _ if snapshot.pending.is_empty() => vec![Line::raw("next: waiting for news")],

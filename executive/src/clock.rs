@@ -1,49 +1,85 @@
 //! The one real clock: mission time from the time since boot, which nobody can set and which goes on while the machine
 //! sleeps.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicI64, Ordering};
 use std::time::Duration as Real;
 
 use kirk_network::Time;
 use kirk_runtime::Clocks;
 
-/// Tells mission time, which begins at an anchor and may run faster than the world.
-#[derive(Clone, Copy, Debug)]
+/// Tells mission time, which begins at an anchor and may run faster than the world. Clones are the same clock.
+#[derive(Clone, Debug)]
 pub struct Clock {
-    /// The time since boot, in microseconds, at the anchor.
-    anchor: i64,
+    /// The time since boot, in microseconds, at the anchor; `STANDING` until that is known.
+    anchor: Arc<AtomicI64>,
     /// Mission time at the anchor.
     at: Time,
     speed: f64,
 }
 
+const STANDING: i64 = i64::MAX;
+
 impl Clock {
     /// A clock that stands at `at` now and runs `speed` times as fast as the world.
     pub fn starting(at: Time, speed: f64) -> Clock {
-        Clock { anchor: since_boot(), at, speed }
+        Clock { anchor: Arc::new(since_boot().into()), at, speed }
     }
 
     /// A clock that will stand at zero in a while; before that it is time zero, too.
     pub fn starting_in(wait: Real, speed: f64) -> Clock {
         let anchor = since_boot().saturating_add(wait.as_micros() as i64);
-        Clock { anchor, at: Time::ZERO, speed }
+        Clock { anchor: Arc::new(anchor.into()), at: Time::ZERO, speed }
+    }
+
+    /// A clock that stands at zero until it is started.
+    pub fn standing(speed: f64) -> Clock {
+        Clock { anchor: Arc::new(STANDING.into()), at: Time::ZERO, speed }
+    }
+
+    /// Starts a clock that stands, as if that had been done so many real microseconds ago.
+    pub fn start(&self, ago: i64) {
+        self.anchor.store(since_boot().saturating_sub(ago), Ordering::Release);
+    }
+
+    /// True until it is started.
+    pub fn is_standing(&self) -> bool {
+        self.boot_at_anchor() == STANDING
+    }
+
+    fn boot_at_anchor(&self) -> i64 {
+        self.anchor.load(Ordering::Acquire)
     }
 
     /// How long it is, really, until the anchor.
     pub fn until_anchor(&self) -> Real {
-        Real::from_micros((self.anchor - since_boot()).max(0) as u64)
+        Real::from_micros((self.boot_at_anchor() - since_boot()).max(0) as u64)
     }
 
-    /// What the clocks of the machine say at the anchor.
+    /// What the clocks of the machine say at the anchor; what they say now if the clock stands.
     pub fn anchor(&self) -> Clocks {
         let now = clocks();
-        let ahead = self.anchor - now.since_boot;
-        Clocks { since_boot: self.anchor, calendar: now.calendar + ahead, ..now }
+        if self.is_standing() {
+            return now;
+        }
+        let anchor = self.boot_at_anchor();
+        Clocks { since_boot: anchor, calendar: now.calendar.saturating_add(anchor - now.since_boot), ..now }
     }
 
     /// Mission time now.
     pub fn now(&self) -> Time {
-        let passed = (since_boot() - self.anchor).max(0) as f64 * self.speed;
-        Time::from_micros(self.at.as_micros().saturating_add(passed as i64))
+        Time::from_micros(self.at.as_micros().saturating_add(self.passed().max(0)))
+    }
+
+    /// Mission time now for people: before the anchor it is negative, and counts down.
+    pub fn countdown(&self) -> Time {
+        let passed = if self.is_standing() { 0 } else { self.passed() };
+        Time::from_micros(self.at.as_micros().saturating_add(passed))
+    }
+
+    /// How much mission time has passed since the anchor.
+    fn passed(&self) -> i64 {
+        ((since_boot() - self.boot_at_anchor()) as f64 * self.speed) as i64
     }
 
     /// How long it really takes from one mission time to another; nothing if that is past.
@@ -80,4 +116,29 @@ fn since_boot() -> i64 {
 fn since_boot() -> i64 {
     let now = rustix::time::clock_gettime(rustix::time::ClockId::Monotonic);
     now.tv_sec * 1_000_000 + now.tv_nsec / 1_000
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_clock_stands_until_it_is_started_and_all_who_have_it_see_that() {
+        let clock = Clock::standing(1000.0);
+        let another = clock.clone();
+        assert_eq!((clock.now(), clock.countdown(), clock.is_standing()), (Time::ZERO, Time::ZERO, true));
+        assert!(clock.until_anchor() > Real::from_secs(1 << 30));
+        clock.start(2_000);
+        assert!(another.now() >= Time::from_micros(2_000_000) && !another.is_standing());
+        assert_eq!(another.until_anchor(), Real::ZERO);
+    }
+
+    #[test]
+    fn before_its_time_a_clock_says_zero_and_for_people_how_long_there_is() {
+        let clock = Clock::starting_in(Real::from_secs(3600), 2.0);
+        assert_eq!(clock.now(), Time::ZERO);
+        let left = clock.countdown().as_micros();
+        assert!((-7_200_000_000..-7_100_000_000).contains(&left), "{left}");
+        assert!(clock.anchor().calendar - clocks().calendar > 3_590_000_000);
+    }
 }

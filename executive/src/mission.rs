@@ -6,7 +6,7 @@ use std::sync::mpsc::{Receiver, Sender};
 use std::time::Duration as Real;
 
 use kirk_network::{Duration, Network, Time};
-use kirk_runtime::journal::{Line, Record, Start};
+use kirk_runtime::journal::{Clocks, Journal, Line, Record, Start};
 use kirk_runtime::{Execution, Executive, Handover, Patience, Plan, Settings, Setup, Strategy, recover};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -51,6 +51,25 @@ pub struct Options {
     /// Whether the mission is to be shown on a screen; that is up to whoever shows it.
     #[serde(default)]
     pub screen: Screen,
+    /// When the clock of the mission starts.
+    #[serde(default)]
+    pub zero: Zero,
+}
+
+/// When the clock of a mission starts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Zero {
+    /// As soon as everything is ready.
+    #[default]
+    Soon,
+    /// At this time of the calendar, in microseconds since 1970: several executives may share it.
+    At(i64),
+    /// When the driver first confirms an event, which it has to do within so many real seconds.
+    DriverConfirms {
+        /// The seconds.
+        within: f64,
+    },
 }
 
 /// Whether a mission is shown on a screen of the terminal, or by lines.
@@ -78,6 +97,7 @@ impl Default for Options {
             http: None,
             on_failure: None,
             screen: Screen::Auto,
+            zero: Zero::Soon,
         }
     }
 }
@@ -119,10 +139,10 @@ const LATENESS: Real = Real::from_millis(100);
 /// How long before time zero everything is prepared, so that nothing is late at time zero.
 const PREPARATION: Real = Real::from_millis(50);
 /// How long to wait, really, before the driver is tried again, at first and at most.
-const PATIENCE: (Real, Real) = (Real::from_millis(100), Real::from_secs(2));
+pub(crate) const PATIENCE: (Real, Real) = (Real::from_millis(100), Real::from_secs(2));
 
-/// Prepares a mission: opens the journal, the port and the driver. Its time zero is a moment later. `said` hears what commands
-/// of the driver print.
+/// Prepares a mission: opens the journal, the port and the driver. Its time zero is a moment later, or as the options
+/// say. `said` hears what commands of the driver print.
 ///
 /// # Errors
 /// A sentence that says what cannot be opened. Then nothing has been started.
@@ -140,7 +160,7 @@ pub fn begin(
     let run = setup.run.clone();
     let shell = serde_json::to_string(&options).and_then(RawValue::from_string).map_err(|e| e.to_string())?;
     let executive = Executive::new(mission.plan, setup.clone());
-    let clock = Clock::starting_in(PREPARATION, options.speed);
+    let clock = clock(&options)?;
     let journal = match journal {
         None => None,
         Some(path) => {
@@ -180,9 +200,23 @@ pub fn resume(
     let listener = open(&options)?;
     let (mut anchor, mut anchored) = (&start.clocks, Time::ZERO);
     for line in &journal.lines {
-        if let Record::Resumed { clocks, .. } = &line.record {
+        if let Record::Resumed { clocks, .. } | Record::Began { clocks } = &line.record {
             (anchor, anchored) = (clocks, line.time());
         }
+    }
+    if let Some(clock) = before_zero(&options, &journal, anchor) {
+        if at.is_some_and(|at| at > Time::ZERO) {
+            return Err(format!("`{}` has not begun, so it can be no time in the mission", start.program));
+        }
+        note(format!("`{}` has not begun; it is waited for time zero", start.program));
+        file.push(&Line::new(
+            Time::ZERO,
+            Record::Resumed { clocks: clock.anchor(), unsent: replayed.unsent.clone() },
+        ));
+        executive.handle_resumed(Time::ZERO, &replayed.unsent);
+        let run = start.run.clone();
+        return make(executive, options, clock, Some(file), listener, &run, said, true)
+            .map(|ready| Resumption::Ready(Box::new(ready)));
     }
     let clocks = clocks();
     let rebooted = clocks.rebooted_since(anchor);
@@ -221,6 +255,42 @@ pub fn resume(
     let run = start.run.clone();
     make(executive, options, clock, Some(file), listener, &run, said, true)
         .map(|ready| Resumption::Ready(Box::new(ready)))
+}
+
+/// The clock of a mission that was interrupted before it began. `anchor` is what the clocks of the machine said, or will say, at
+/// time zero, as far as the journal knows.
+fn before_zero(options: &Options, journal: &Journal, anchor: &Clocks) -> Option<Clock> {
+    let began = || journal.lines.iter().any(|line| matches!(line.record, Record::Began { .. }));
+    match options.zero {
+        Zero::DriverConfirms { .. } if !began() => Some(Clock::standing(options.speed)),
+        Zero::At(_) if journal.lines.iter().all(|line| line.time() == Time::ZERO) => {
+            let now = clocks();
+            let rebooted = now.rebooted_since(anchor);
+            let left =
+                if rebooted { anchor.calendar - now.calendar } else { anchor.since_boot - now.since_boot };
+            (left > 0).then(|| Clock::starting_in(Real::from_micros(left.unsigned_abs()), options.speed))
+        }
+        _ => None,
+    }
+}
+
+/// The clock of a mission that begins.
+fn clock(options: &Options) -> Result<Clock, String> {
+    match options.zero {
+        Zero::Soon => Ok(Clock::starting_in(PREPARATION, options.speed)),
+        Zero::At(calendar) => {
+            let wait = calendar.saturating_sub(clocks().calendar);
+            if wait <= 0 {
+                let ago = Duration::from_micros(wait.saturating_neg());
+                return Err(format!("the time to start at was {ago} s ago, and it has to lie ahead"));
+            }
+            Ok(Clock::starting_in(Real::from_micros(wait.unsigned_abs()), options.speed))
+        }
+        Zero::DriverConfirms { .. } if options.driver.is_none() => {
+            Err("the clock cannot wait for a driver to confirm: there is none".to_string())
+        }
+        Zero::DriverConfirms { .. } => Ok(Clock::standing(options.speed)),
+    }
 }
 
 impl Ready {

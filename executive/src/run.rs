@@ -3,6 +3,8 @@
 //! What happens to the executive is in the journal, on the disk, before anything that comes of it leaves the process. As the
 //! disk takes its time, what is due next is written ahead, and the loop goes on while the disk is at work.
 
+mod zero;
+
 use std::collections::{HashMap, HashSet, VecDeque};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::Duration as Real;
@@ -20,7 +22,7 @@ use crate::file::{JournalFile, Ticket};
 use crate::happening::Happening;
 use crate::lateness::Lateness;
 use crate::mission::Ready;
-use crate::snapshot::snapshot;
+use crate::snapshot::{Waits, snapshot};
 
 /// What became of a mission.
 #[derive(Clone, Debug)]
@@ -44,10 +46,10 @@ impl Ready {
     /// Executes the mission to its end.
     pub fn run(self, internal: bool) -> Ended {
         let Ready { executive, options, desk, inbox, journal, driver, server } = self;
-        let clock = *desk.clock();
+        let (clock, zero) = (desk.clock().clone(), options.zero);
         let mut work = Loop {
             executive,
-            clock,
+            clock: clock.clone(),
             desk,
             journal,
             driver,
@@ -60,10 +62,14 @@ impl Ready {
             stopped: None,
             lost: None,
             replies: VecDeque::new(),
+            waits: None,
+            begun_by: None,
         };
         work.write_ahead_now(clock.now());
-        std::thread::sleep(clock.until_anchor());
-        work.go(&inbox);
+        work.wait_for_zero(zero, &inbox);
+        if work.stopped.is_none() {
+            work.go(&inbox);
+        }
         // Whoever still wants to hand something in is not to wait for somebody to take it.
         drop(inbox);
         work.finish_journal();
@@ -113,6 +119,10 @@ struct Loop {
     lost: Option<String>,
     /// Who is answered when it is.
     replies: VecDeque<(Ticket, AnswerNews, Reply<AnswerNews>)>,
+    /// What is waited for before the clock runs.
+    waits: Option<Waits>,
+    /// The dispatch that the driver has confirmed before it was time zero.
+    begun_by: Option<String>,
 }
 
 impl Loop {
@@ -204,7 +214,13 @@ impl Loop {
             }
             Message::Synced { result: Err(error), .. } => self.lose_journal(&error),
             Message::State { reply } => reply(self.state(now)),
-            Message::Look { reply } => reply(snapshot(&mut self.executive, now, false)),
+            Message::Look { reply } => {
+                let snapshot = snapshot(&mut self.executive, now, false);
+                reply(match self.waits.clone() {
+                    Some(waits) => snapshot.before(waits),
+                    None => snapshot,
+                });
+            }
             Message::Stop { reason } => self.stopped = Some(reason),
         }
         self.plan_anew(now);
@@ -255,6 +271,9 @@ impl Loop {
 
     /// Records what has come of it all, and when that is safe lets it leave.
     fn perform(&mut self) {
+        if self.waits.is_some() {
+            return self.write();
+        }
         let now = self.clock.now();
         // Whoever is told of something and asks for the state at once is to see it there.
         self.desk.set_version(self.executive.version());
@@ -332,8 +351,9 @@ impl Loop {
             self.lateness.add(now, *due);
         }
         let (id, event, due, attempt) = (id.clone(), name.clone(), at(*due), *attempt);
+        let known = self.begun_by.as_ref() == Some(&id);
         self.desk.tell(Happening::Sent { at: at(now), event, id, due, attempt });
-        if let Some(driver) = &self.driver {
+        if let Some(driver) = self.driver.as_ref().filter(|_| !known) {
             driver.send(sending);
         }
     }
@@ -417,7 +437,11 @@ impl Loop {
     }
 
     fn state(&self, now: Time) -> String {
-        serde_json::to_string(&self.executive.execution(now, false))
+        let mut execution = self.executive.execution(now, false);
+        if self.waits.is_some() {
+            execution.rows.clear();
+        }
+        serde_json::to_string(&execution)
             .unwrap_or_else(|error| unreachable!("a record has only strings and numbers: {error}"))
     }
 }

@@ -22,6 +22,25 @@ pub struct Snapshot {
     pub possible: Vec<Possible>,
     /// What the driver was told of and has not confirmed.
     pub pending: Vec<Pending>,
+    /// What is waited for, if it is not yet time zero.
+    pub waits: Option<Waits>,
+}
+
+/// What is waited for before time zero.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Waits {
+    /// The hour.
+    Hour,
+    /// That the driver confirms this event.
+    Driver(String),
+}
+
+impl Snapshot {
+    /// The same before time zero: nothing has happened, and nothing can be heard.
+    pub(crate) fn before(self, waits: Waits) -> Snapshot {
+        let (rows, possible, pending) = (Vec::new(), Vec::new(), Vec::new());
+        Snapshot { rows, possible, pending, next: None, waits: Some(waits), ..self }
+    }
 }
 
 /// What happens next if nothing is heard.
@@ -62,6 +81,7 @@ pub(crate) fn snapshot(executive: &mut Executive, now: Time, internal: bool) -> 
         next: upcoming.map(|(at, event, how)| Next { at, event: label(event), how }),
         possible: if over { Vec::new() } else { possible(executive) },
         pending: executive.pending(),
+        waits: None,
     }
 }
 

@@ -78,6 +78,11 @@ pub enum Record {
         /// Came of it: what was known by then that the last such record did not know; nothing if there is no plan.
         known: Option<Box<Checkpoint>>,
     },
+    /// The clock of the mission started: it had stood at zero until the driver confirmed.
+    Began {
+        /// What the clocks say at time zero.
+        clocks: Clocks,
+    },
     /// The executive was away and is back.
     Resumed {
         /// What the clocks say.

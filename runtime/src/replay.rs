@@ -151,7 +151,8 @@ impl Repetition {
             Record::Sent { id } => {
                 executive.handle_sent(at, id);
             }
-            Record::Ahead { .. } | Record::Warning { .. } | Record::Ignored { .. } => {}
+            Record::Began { .. } | Record::Ahead { .. } | Record::Warning { .. } | Record::Ignored { .. } => {
+            }
             Record::End { execution } => {
                 let ours = executive.execution(at, false);
                 if ours != *execution {

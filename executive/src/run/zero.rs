@@ -1,0 +1,154 @@
+//! Before time zero: the clock of the mission stands until its hour has come, or until the driver first confirms.
+//!
+//! Nothing happens to the executive meanwhile. Whoever asks is told how things are, and news is refused: what has not begun
+//! cannot have ended.
+
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::time::{Duration as Real, Instant};
+
+use kirk_network::Time;
+use kirk_runtime::journal::Record;
+use kirk_runtime::{Output, Sending};
+
+use super::{LONGEST_SLEEP, Loop};
+use crate::desk::{AnswerNews, Ignored, Message, Reply};
+use crate::happening::Happening;
+use crate::mission::{PATIENCE, Zero};
+use crate::snapshot::Waits;
+
+impl Loop {
+    /// Waits until the clock runs, or the mission is over or stopped before it does.
+    pub(super) fn wait_for_zero(&mut self, zero: Zero, inbox: &Receiver<Message>) {
+        match zero {
+            // What comes meanwhile is heard when it begins.
+            Zero::Soon => std::thread::sleep(self.clock.until_anchor()),
+            Zero::DriverConfirms { within } if self.clock.is_standing() => self.ask_driver(within, inbox),
+            Zero::DriverConfirms { .. } => {}
+            Zero::At(_) => self.wait_for_hour(inbox),
+        }
+        self.waits = None;
+    }
+
+    fn wait_for_hour(&mut self, inbox: &Receiver<Message>) {
+        self.waits = Some(Waits::Hour);
+        while self.stopped.is_none() && !self.executive.is_over() {
+            let left = self.clock.until_anchor();
+            if left.is_zero() {
+                return;
+            }
+            match inbox.recv_timeout(left.min(LONGEST_SLEEP)) {
+                Ok(message) => self.take_early(message),
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return,
+            }
+        }
+    }
+
+    /// Hands the first event over until the driver confirms it; then it is time zero. The executive knows nothing of the
+    /// attempts that failed: in its world no time has passed. All of them have the id of the dispatch, which was written ahead.
+    fn ask_driver(&mut self, within: f64, inbox: &Receiver<Message>) {
+        let Some(first) = self.first_sending() else {
+            self.warn(
+                "nothing is handed over at time zero, so the clock does not wait for the driver".to_string(),
+            );
+            return self.clock.start(0);
+        };
+        self.waits = Some(Waits::Driver(first.name.clone()));
+        let ticket = self.ahead.get(&first.id).copied().unwrap_or_default();
+        let begun = Instant::now();
+        let deadline = begun + Real::from_secs_f64(within);
+        let (mut attempts, mut asked, mut again, mut last) = (0, false, begun, String::new());
+        while self.stopped.is_none() && !self.executive.is_over() {
+            let now = Instant::now();
+            if now >= deadline {
+                let last = if last.is_empty() { "it has not answered" } else { &last };
+                return self.give_up(&first.name, within, last);
+            }
+            let safe = self.journal.is_none() || ticket <= self.synced;
+            if let (true, false, true, Some(driver)) = (safe, asked, now >= again, &self.driver) {
+                (attempts, asked) = (attempts + 1, true);
+                driver.send(Sending { attempt: attempts, ..first.clone() });
+            }
+            let wake = if asked || !safe { deadline } else { deadline.min(again) };
+            match inbox.recv_timeout((wake - now).min(LONGEST_SLEEP)) {
+                Ok(Message::Executed { id, ago }) if id == first.id => return self.begin(id, ago),
+                Ok(Message::Failed { id, reason, .. }) if id == first.id => {
+                    let wait = PATIENCE.0.saturating_mul(1 << (attempts - 1).min(10)).min(PATIENCE.1);
+                    (asked, again) = (false, Instant::now() + wait);
+                    if reason != last {
+                        self.record(
+                            Time::ZERO,
+                            Record::Warning { text: format!("`{}` is not confirmed: {reason}", first.name) },
+                        );
+                        self.write();
+                        last.clone_from(&reason);
+                        self.desk.tell(Happening::Failed { at: super::at(Time::ZERO), id, reason });
+                    }
+                }
+                Ok(message) => self.take_early(message),
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return,
+            }
+        }
+    }
+
+    /// What is handed over first at time zero, if anything is.
+    fn first_sending(&self) -> Option<Sending> {
+        let mut ahead = self.executive.clone();
+        ahead.handle_timeout(Time::ZERO);
+        let sending = |output| if let Output::Send(sending) = output { Some(sending) } else { None };
+        std::iter::from_fn(|| ahead.poll_output()).find_map(sending)
+    }
+
+    /// The driver has confirmed the first event, `ago` seconds after it was executed if it says so: that was time zero.
+    fn begin(&mut self, id: String, ago: Option<f64>) {
+        self.clock.start(ago.map_or(0, |ago| (ago * 1e6) as i64));
+        self.record(Time::ZERO, Record::Began { clocks: self.clock.anchor() });
+        self.waits = None;
+        self.begun_by = Some(id.clone());
+        self.perform();
+        self.take(Message::Executed { id, ago });
+    }
+
+    fn give_up(&mut self, name: &str, within: f64, last: &str) {
+        let detail = format!(
+            "the driver did not confirm `{name}` within {within} s, so the mission has not begun: {last}"
+        );
+        let reason = "driver-failed".to_string();
+        self.executive.handle_stopped(Time::ZERO, &reason, &detail);
+        self.record(Time::ZERO, Record::Stopped { reason, detail });
+    }
+
+    fn take_early(&mut self, message: Message) {
+        match message {
+            Message::News { events, answer, reply, .. } => {
+                self.refuse(events.into_iter().map(|(name, _)| name), answer, reply);
+            }
+            // Of an attempt that is over.
+            Message::Executed { .. } | Message::Failed { .. } => {}
+            message => self.take(message),
+        }
+    }
+
+    fn refuse(
+        &mut self,
+        names: impl Iterator<Item = String>,
+        mut answer: AnswerNews,
+        reply: Reply<AnswerNews>,
+    ) {
+        for event in names {
+            let why = "the mission has not begun".to_string();
+            if self.ignored.insert((event.clone(), why.clone())) {
+                self.record(Time::ZERO, Record::Ignored { event: event.clone(), why: why.clone() });
+            }
+            answer.ignored.push(Ignored { event, why });
+        }
+        self.write();
+        reply(answer);
+    }
+
+    fn warn(&mut self, text: String) {
+        self.record(Time::ZERO, Record::Warning { text: text.clone() });
+        self.desk.tell(Happening::Warning { at: super::at(Time::ZERO), text });
+    }
+}

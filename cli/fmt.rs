@@ -26,7 +26,7 @@ fn fmt_one(file: &str, check: bool, common: &Common) -> io::Result<Status> {
     };
     let before = match text(file) {
         Ok(text) => text,
-        Err(diagnostic) => return refuse("", &[diagnostic]),
+        Err(diagnostic) => return refuse("", &[*diagnostic]),
     };
     if is_network(file, &before) {
         let message = format!("`{name}` is a network, and no program to lay out");

@@ -42,7 +42,7 @@ type Reader = fn(&str) -> Result<(Network, Places), Vec<ReadProblem>>;
 pub(crate) fn load(file: &str, selection: &Selection) -> Input {
     let text = match text(file) {
         Ok(text) => text,
-        Err(diagnostic) => return Input::broken(shown(file), diagnostic),
+        Err(diagnostic) => return Input::broken(shown(file), *diagnostic),
     };
     match kind(file, &text) {
         Kind::Network(reader) => {
@@ -67,7 +67,7 @@ pub(crate) fn load_all(files: &[String], selection: &Selection) -> Input {
         let text = if files[..index].contains(file) {
             Err(problem(format!("`{}` is given twice", shown(file))))
         } else {
-            text(file).map_err(|diagnostic| Diagnostic { span: place, ..diagnostic })
+            text(file).map_err(|diagnostic| Diagnostic { span: place, ..*diagnostic })
         };
         let text = text.unwrap_or_else(|diagnostic| {
             diagnostics.push(diagnostic);
@@ -94,7 +94,7 @@ pub(crate) fn shown(file: &str) -> &str {
 }
 
 /// The text of an input file.
-pub(crate) fn text(file: &str) -> Result<String, Diagnostic> {
+pub(crate) fn text(file: &str) -> Result<String, Box<Diagnostic>> {
     let start = Span::default();
     let bytes =
         read(file, LARGEST_NETWORK).map_err(|message| Diagnostic::error(Code::CannotRead, start, message))?;
@@ -109,7 +109,7 @@ pub(crate) fn text(file: &str) -> Result<String, Diagnostic> {
     if text.len() as u64 > LARGEST_PROGRAM && !is_network(file, &text) {
         let message =
             format!("this file has {} bytes; kirk reads programs of up to {LARGEST_PROGRAM}", text.len());
-        return Err(Diagnostic::error(Code::TooLong, start, message));
+        return Err(Diagnostic::error(Code::TooLong, start, message).into());
     }
     Ok(text)
 }

@@ -6,7 +6,7 @@ use codespan_reporting::diagnostic as codespan;
 use codespan_reporting::files::SimpleFiles;
 use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
 use codespan_reporting::term::{self, Config};
-use kirk_compiler::{Diagnostic, LineIndex, Severity, Source, Span};
+use kirk_compiler::{Diagnostic, LineIndex, Severity, Source, Span, Suggestion};
 use serde::Serialize;
 
 use crate::args::{Color, Common};
@@ -112,7 +112,7 @@ impl<'a> Reporter<'a> {
                 Severity::Note => "note",
             },
             message: &diagnostic.message,
-            file: self.sources.get(diagnostic.span.source as usize).map_or(String::new(), |s| s.name.clone()),
+            file: self.name(diagnostic.span).to_string(),
             span: self.span_json(diagnostic.span),
             labels: std::iter::once((diagnostic.span, &diagnostic.primary))
                 .filter(|(_, message)| !message.is_empty())
@@ -120,7 +120,25 @@ impl<'a> Reporter<'a> {
                 .map(|(span, message)| LabelJson { span: self.span_json(span), message })
                 .collect(),
             help: diagnostic.help.as_deref(),
+            suggestions: diagnostic
+                .suggestions
+                .iter()
+                .map(|suggestion| self.suggestion(suggestion))
+                .collect(),
         }
+    }
+
+    fn suggestion<'b>(&self, suggestion: &'b Suggestion) -> SuggestionJson<'b> {
+        let edits = suggestion.edits.iter().map(|edit| EditJson {
+            file: self.name(edit.span).to_string(),
+            span: self.span_json(edit.span),
+            text: edit.text(self.sources).to_string(),
+        });
+        SuggestionJson { title: &suggestion.title, edits: edits.collect() }
+    }
+
+    fn name(&self, span: Span) -> &str {
+        self.sources.get(span.source as usize).map_or("", |source| source.name.as_str())
     }
 
     pub(crate) fn span_json(&self, span: Span) -> Option<SpanJson> {
@@ -139,6 +157,22 @@ pub(crate) struct DiagnosticJson<'a> {
     span: Option<SpanJson>,
     labels: Vec<LabelJson<'a>>,
     help: Option<&'a str>,
+    suggestions: Vec<SuggestionJson<'a>>,
+}
+
+/// Changes of the files that together put the problem right.
+#[derive(Serialize)]
+struct SuggestionJson<'a> {
+    title: &'a str,
+    edits: Vec<EditJson>,
+}
+
+/// What is written in the place of a span, which may be empty.
+#[derive(Serialize)]
+struct EditJson {
+    file: String,
+    span: Option<SpanJson>,
+    text: String,
 }
 
 #[derive(Serialize)]

@@ -1,10 +1,13 @@
 //! SARIF 2.1.0 (OASIS, *Static Analysis Results Interchange Format*): what editors and code hosts read diagnostics from.
 //!
 //! One log with one run for all files. A rule for each code that occurs, with its page as help; a result for each
-//! diagnostic, the secondary places as related locations. The verdict on a file is with the file, among the artifacts.
+//! diagnostic, the secondary places as related locations, what would put it right as fixes. The verdict on a file is with
+//! the file, among the artifacts.
+
+use std::collections::BTreeMap;
 
 use kirk_compiler::code::markdown;
-use kirk_compiler::{Code, Diagnostic, Severity, explain};
+use kirk_compiler::{Code, Diagnostic, Severity, Suggestion, explain};
 use serde_json::{Value, json};
 
 use crate::check::CheckJson;
@@ -64,6 +67,10 @@ impl Log {
                 "locations": [place(diagnostic.span, &diagnostic.primary)],
                 "relatedLocations": related,
             });
+            if !diagnostic.suggestions.is_empty() {
+                let fix = |suggestion: &Suggestion| fix(suggestion, first, input, reporter);
+                result["fixes"] = diagnostic.suggestions.iter().map(fix).collect();
+            }
             if diagnostic.code == Code::NotControllable {
                 result["properties"] = json!({"conflict": &checked.conflict});
             }
@@ -132,6 +139,26 @@ fn text(diagnostic: &Diagnostic) -> String {
         text.push_str(help);
     }
     text
+}
+
+/// The changes of a suggestion, file by file.
+fn fix(suggestion: &Suggestion, first: usize, input: &Input, reporter: &Reporter<'_>) -> Value {
+    let mut changes: BTreeMap<u32, Vec<Value>> = BTreeMap::new();
+    for edit in &suggestion.edits {
+        changes.entry(edit.span.source).or_default().push(json!({
+            "deletedRegion": reporter.span_json(edit.span).map(region),
+            "insertedContent": {"text": edit.text(&input.sources)},
+        }));
+    }
+    let changed = |(source, replacements): (u32, Vec<Value>)| {
+        let name = input.sources.get(source as usize).map_or("", |source| source.name.as_str());
+        json!({
+            "artifactLocation": {"uri": uri(name), "index": first + source as usize},
+            "replacements": replacements,
+        })
+    };
+    let changes: Vec<Value> = changes.into_iter().map(changed).collect();
+    json!({"description": {"text": suggestion.title}, "artifactChanges": changes})
 }
 
 /// Both count from 1, in characters, and name the column after the last one.

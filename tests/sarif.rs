@@ -65,6 +65,40 @@ fn every_bad_program_and_every_unreadable_file_is_in_the_log() {
 }
 
 #[test]
+fn what_puts_a_problem_right_is_a_fix() {
+    let file = "tests/rmpl/bad/K0403-lower-above-upper.rmpl";
+    let (log, _) = log(&["tests/rmpl/bad/K0401-ranges.rmpl", file]);
+    let results = log["runs"][0]["results"].as_array().unwrap();
+    let result = results.iter().find(|result| result["ruleId"] == "K0403").unwrap();
+    let region =
+        |from: u32, to: u32| json!({"startLine": 2, "startColumn": from, "endLine": 2, "endColumn": to});
+    let fix = json!({
+        "description": {"text": "Swap the bounds"},
+        "artifactChanges": [{
+            "artifactLocation": {"uri": file, "index": 1},
+            "replacements": [
+                {"deletedRegion": region(55, 57), "insertedContent": {"text": "15"}},
+                {"deletedRegion": region(71, 73), "insertedContent": {"text": "20"}},
+            ],
+        }],
+    });
+    assert_eq!(result["fixes"], json!([fix]));
+
+    let output = kirk(&["check", "--format", "json", file]);
+    let checked: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let span =
+        |from: u32, to: u32| json!({"start": {"line": 2, "column": from}, "end": {"line": 2, "column": to}});
+    let suggestion = json!({
+        "title": "Swap the bounds",
+        "edits": [
+            {"file": file, "span": span(55, 57), "text": "15"},
+            {"file": file, "span": span(71, 73), "text": "20"},
+        ],
+    });
+    assert_eq!(checked["diagnostics"][0]["suggestions"], json!([suggestion]));
+}
+
+#[test]
 fn the_exit_status_is_that_of_a_check() {
     assert_eq!(log(&["examples/rmpl/eat-and-bike.rmpl"]).1, Some(0));
     assert_eq!(log(&["examples/rmpl/too-late.rmpl", "examples/rmpl/eat-and-bike.rmpl"]).1, Some(1));

@@ -163,8 +163,7 @@ fn entry(program: &ast::Program, names: &Names, options: &Options, problems: &mu
             let text = names.package("", &text).to_string();
             let has_programs = program.programs.iter().any(|p| p.home == text);
             if !defined.contains(&text.as_str()) && !has_programs {
-                let near =
-                    nearest(&text, defined.iter().copied()).map(|near| format!("Did you mean `{near}`?"));
+                let near = nearest(&text, defined.iter().copied());
                 let known = if defined.is_empty() {
                     "It defines no package at all: leave `-P` out.".to_string()
                 } else {
@@ -178,7 +177,7 @@ fn entry(program: &ast::Program, names: &Names, options: &Options, problems: &mu
                     )
                     .primary("looked for it here")
                     .help(known)
-                    .maybe_help(near),
+                    .maybe_help(near.map(|near| format!("Did you mean `{near}`?"))),
                 );
                 return None;
             }

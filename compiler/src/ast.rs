@@ -39,7 +39,7 @@ pub struct Package {
     /// The packages whose names it sees.
     pub uses: Vec<Ident>,
     /// Single names it takes from other packages.
-    pub imports: Vec<Ident>,
+    pub imports: Vec<Import>,
     /// Other names of the package itself.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub nicknames: Vec<Ident>,
@@ -56,6 +56,15 @@ impl Package {
     pub fn is_called(&self, name: &str) -> bool {
         self.name.name == name || self.nicknames.iter().any(|nickname| nickname.name == name)
     }
+}
+
+/// A name that a package takes from another.
+#[derive(Clone, Debug)]
+pub struct Import {
+    /// The other package.
+    pub from: Ident,
+    /// The name.
+    pub name: Ident,
 }
 
 /// `(defparameter ...)` or `(defconstant ...)`.
@@ -460,6 +469,22 @@ impl Body {
             Body::Label(labelled) => &labelled.body,
             Body::Call(_) | Body::Delay(_) | Body::Between(_) => &[],
         }
+    }
+}
+
+impl Ident {
+    /// Another name, with the package of this one before it.
+    pub fn with_name(&self, name: &str) -> String {
+        match &self.package {
+            Some(package) => format!("{package}:{name}"),
+            None => name.to_string(),
+        }
+    }
+}
+
+impl Serialize for Import {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(&format_args!("{}:{}", self.from.name, self.name.name))
     }
 }
 

@@ -19,8 +19,11 @@ pub(crate) const MAX_COUNT: u64 = crate::expand::MAX_EPISODES;
 /// What a number inside of a calculation is called.
 const NUMBER: &str = "part of a calculation";
 
-/// The value, or what is wrong with it; `None` if that has been reported.
-pub(crate) fn evaluate(expression: &Expression, variables: &[Value]) -> Result<Value, Option<Diagnostic>> {
+/// What is wrong; `None` if that has been reported.
+pub(crate) type Wrong = Option<Box<Diagnostic>>;
+
+/// The value, or what is wrong with it.
+pub(crate) fn evaluate(expression: &Expression, variables: &[Value]) -> Result<Value, Wrong> {
     let span = expression.span;
     let kind = match &expression.kind {
         ExpressionKind::Value(kind) => kind.clone(),
@@ -28,33 +31,29 @@ pub(crate) fn evaluate(expression: &Expression, variables: &[Value]) -> Result<V
         ExpressionKind::Error => return Err(None),
         ExpressionKind::Scaled(unit, inner) => {
             let number = number(inner, variables, NUMBER)?;
-            ValueKind::Number(scale(number, *unit).map_err(|why| Some(no_result(span, why)))?)
+            ValueKind::Number(scale(number, *unit).map_err(|why| Some(no_result(span, why).into()))?)
         }
         ExpressionKind::Calculated(operator, parts) => {
             let numbers: Result<Vec<Duration>, _> =
                 parts.iter().map(|part| number(part, variables, NUMBER)).collect();
-            ValueKind::Number(operator.apply(&numbers?).map_err(|why| Some(no_result(span, why)))?)
+            ValueKind::Number(operator.apply(&numbers?).map_err(|why| Some(no_result(span, why).into()))?)
         }
     };
     Ok(Value { kind, span })
 }
 
 /// The value as a bound, called `what` in messages.
-pub(crate) fn bound(
-    expression: &Expression,
-    variables: &[Value],
-    what: &str,
-) -> Result<Bound, Option<Diagnostic>> {
+pub(crate) fn bound(expression: &Expression, variables: &[Value], what: &str) -> Result<Bound, Wrong> {
     let value = evaluate(expression, variables)?;
     match &value.kind {
         ValueKind::Symbol(name) if name == INFINITY => Ok(Bound::Infinite),
         ValueKind::Number(number) => Ok(Bound::Finite(*number)),
-        _ => Err(Some(not_a_number(expression, &value, what))),
+        _ => Err(Some(not_a_number(expression, &value, what).into())),
     }
 }
 
 /// The value as a number of repetitions.
-pub(crate) fn count(expression: &Expression, variables: &[Value]) -> Result<u64, Option<Diagnostic>> {
+pub(crate) fn count(expression: &Expression, variables: &[Value]) -> Result<u64, Wrong> {
     let what = "the number of repetitions";
     let number = number(expression, variables, what)?;
     let bad = |code, problem: &str| {
@@ -63,27 +62,27 @@ pub(crate) fn count(expression: &Expression, variables: &[Value]) -> Result<u64,
     };
     if number < Duration::ZERO {
         let help = "To leave the body out, repeat it 0 times.";
-        return Err(Some(bad(Code::BadCount, "negative").help(help)));
+        return Err(Some(bad(Code::BadCount, "negative").help(help).into()));
     }
     if number.as_micros() % 1_000_000 != 0 {
         let help = "A body is repeated 0, 1, 2, ... times. To wait for some time, use `(delay 1.5 1.5)`.";
-        return Err(Some(bad(Code::BadCount, "no whole number").help(help)));
+        return Err(Some(bad(Code::BadCount, "no whole number").help(help).into()));
     }
     let times = (number.as_micros() / 1_000_000).unsigned_abs();
     if times > MAX_COUNT {
         let help = "Every repetition is unfolded before the mission starts. Is this a number of seconds?";
         let problem = bad(Code::TooManyEpisodes, &format!("more than {MAX_COUNT}"));
-        return Err(Some(problem.help(help)));
+        return Err(Some(problem.help(help).into()));
     }
     Ok(times)
 }
 
 /// The value as a number, called `what` in messages.
-fn number(expression: &Expression, variables: &[Value], what: &str) -> Result<Duration, Option<Diagnostic>> {
+fn number(expression: &Expression, variables: &[Value], what: &str) -> Result<Duration, Wrong> {
     let value = evaluate(expression, variables)?;
     match value.kind {
         ValueKind::Number(number) => Ok(number),
-        _ => Err(Some(not_a_number(expression, &value, what))),
+        _ => Err(Some(not_a_number(expression, &value, what).into())),
     }
 }
 

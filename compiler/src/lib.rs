@@ -88,7 +88,7 @@ mod unfold;
 
 pub use analyse::symbols::{Place, Symbol, SymbolKind, Symbols, symbols};
 pub use code::{Code, explain};
-pub use diagnostic::{Diagnostic, Label, Severity};
+pub use diagnostic::{Diagnostic, Edit, Label, Severity, Suggestion, Text};
 pub use expand::{MAX_DEPTH, MAX_EPISODES};
 pub use explain::{explain_conflict, total};
 pub use format::format;

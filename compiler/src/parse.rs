@@ -20,7 +20,7 @@ use crate::ast::{ControlProgram, Ident, NamedNumber, Program};
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::form::{Form, FormKind, clip, write};
-use crate::nearest::{did_you_mean, nearest};
+use crate::nearest::nearest;
 use crate::problem::Problems;
 use crate::read::foreign::DEFINITIONS;
 use crate::source::Span;
@@ -253,12 +253,11 @@ fn is_declaration(item: &Form, problems: &mut Problems) -> bool {
     let meant =
         nearest(word, ["declare"]).is_some() && inside.is_some_and(|word| DECLARATIONS.contains(&word));
     if meant {
-        let at = item.list().and_then(|items| items.first()).map_or(item.span, |first| first.span);
         let message = format!("there is no operator `{}`", clip(word));
         problems.push(
-            Diagnostic::error(Code::UnknownOperator, at, message)
+            Diagnostic::error(Code::UnknownOperator, head(item), message)
                 .primary("neither an operator nor a program")
-                .help("Did you mean `declare`?"),
+                .meant(head(item), Some("declare")),
         );
     }
     meant
@@ -344,6 +343,7 @@ fn unknown_top_level(form: &Form, defined: &BTreeSet<String>, problems: &mut Pro
     // Of a name with a package, such as `asdf:defsystem`, only the name counts.
     let symbol = form.list().and_then(|items| items.first()).and_then(Form::symbol);
     let word = symbol.map_or("", |symbol| symbol.name.as_str());
+    let mut near = None;
     let (message, help) = if OPERATORS.contains(&word) || defined.contains(word) {
         (
             format!("`{}` stands outside of every program", clip(word)),
@@ -364,15 +364,16 @@ fn unknown_top_level(form: &Form, defined: &BTreeSet<String>, problems: &mut Pro
         (format!("{} is not a definition", form.describe()), None)
     } else {
         let instead = elsewhere::instead_of_definition(word).map(str::to_string);
-        let message = format!("`{}` is not a definition kirk knows", clip(word));
-        (message, instead.or_else(|| did_you_mean(word, DEFINITIONS)))
+        near = nearest(word, DEFINITIONS).filter(|_| instead.is_none());
+        (format!("`{}` is not a definition kirk knows", clip(word)), instead)
     };
-    let at = form.list().and_then(|items| items.first()).map_or(form.span, |first| first.span);
+    let at = head(form);
     problems.push(
         Diagnostic::error(Code::UnknownTopLevel, at, message)
             .primary("a definition was expected here")
             .help(format!("Kirk knows {}.", one_of(&DEFINITIONS)))
-            .maybe_help(help),
+            .maybe_help(help)
+            .meant(at, near),
     );
 }
 
@@ -382,10 +383,14 @@ fn ident(form: &Form) -> Option<Ident> {
     Some(Ident { package: symbol.package.clone(), name: symbol.name.clone(), span: form.span })
 }
 
+/// The place of the first element of a list, which says what the list is.
+fn head(form: &Form) -> Span {
+    form.list().and_then(|items| items.first()).map_or(form.span, |first| first.span)
+}
+
 /// Something is missing in a form.
 fn expected(form: &Form, message: &str, help: &str) -> Diagnostic {
-    let at = form.list().and_then(|items| items.first()).map_or(form.span, |first| first.span);
-    Diagnostic::error(Code::WrongShape, at, message).primary("in this form").help(help)
+    Diagnostic::error(Code::WrongShape, head(form), message).primary("in this form").help(help)
 }
 
 /// Something is not what belongs here.

@@ -1,14 +1,11 @@
 //! What puts a problem right, as an edit that can be made at once.
 
-use kirk_compiler::ast::Body;
 use kirk_compiler::form::Form;
-use kirk_compiler::{Code, Diagnostic, OriginKind, Span};
+use kirk_compiler::{Code, Diagnostic, Edit, OriginKind, Span};
 use kirk_network::{Conflict, Duration, Network, Part};
 
 use crate::analysis::{Analysis, analyse};
-use crate::definition::bare;
 use crate::mission::{Judgement, Mission, judge};
-use crate::outline::top_level;
 use crate::rename::edited;
 use crate::view::View;
 
@@ -31,11 +28,8 @@ pub fn actions(view: &View, problems: &[Diagnostic]) -> Vec<Action> {
         let mut offer = |fix: Option<(String, Vec<(Span, String)>)>| {
             found.extend(fix.map(|(title, edits)| Action { title, problem, edits }));
         };
-        did_you_mean(analysis, diagnostic).into_iter().for_each(|fix| offer(Some(fix)));
+        suggested(analysis, diagnostic).for_each(|fix| offer(Some(fix)));
         match diagnostic.code {
-            Code::UnknownProgram => offer(create(analysis, diagnostic)),
-            Code::DelayNotContingent => offer(make_contingent(analysis, diagnostic)),
-            Code::LowerAboveUpper | Code::DelayReversed => offer(swap(analysis, diagnostic)),
             Code::StartsAtDelayedEnd => offer(slack_around(analysis, diagnostic.span)),
             Code::NotControllable if view.is_current() => {
                 let mission = view.missions.iter().find(|mission| mission.name == diagnostic.span);
@@ -54,84 +48,15 @@ pub fn actions(view: &View, problems: &[Diagnostic]) -> Vec<Action> {
 
 type Fix = (String, Vec<(Span, String)>);
 
-/// The names that were probably meant instead of the one at the place of the problem.
-fn did_you_mean(analysis: &Analysis, diagnostic: &Diagnostic) -> Vec<Fix> {
-    let question = diagnostic.help.as_deref().and_then(|help| help.split_once("Did you mean "));
-    let Some((question, _)) = question.and_then(|(_, rest)| rest.split_once('?')) else { return Vec::new() };
-    let written = analysis.source.slice(diagnostic.span);
-    let is_one_word =
-        !written.is_empty() && !written.contains(|c: char| c.is_whitespace() || "()".contains(c));
-    if !is_one_word {
-        return Vec::new();
-    }
-    // Names are quoted in one way, strings, quotation marks and all, in another.
-    let meant: Vec<&str> = match question.starts_with('"') {
-        true => vec![question],
-        false => question.split('`').skip(1).step_by(2).collect(),
-    };
-    let fix = |meant: &str| {
-        let whole = meant.contains(':') || !written.contains(':');
-        let span = if whole { diagnostic.span } else { bare(analysis, diagnostic.span) };
-        (format!("Change to `{meant}`"), vec![(span, meant.to_string())])
-    };
-    meant.into_iter().filter(|meant| !meant.starts_with("--")).map(fix).collect()
-}
-
-/// A definition of the program that is called and does not exist, behind the one that calls it.
-fn create(analysis: &Analysis, diagnostic: &Diagnostic) -> Option<Fix> {
-    let name = analysis.source.slice(bare(analysis, diagnostic.span));
-    if name.is_empty() || name.len() != (diagnostic.span.end - diagnostic.span.start) as usize {
-        return None;
-    }
-    let mut open: Vec<&Body> = analysis.program.programs.iter().flat_map(|program| &program.body).collect();
-    let mut count = 0;
-    while let Some(body) = open.pop() {
-        if let Body::Call(call) = body
-            && call.program.span == diagnostic.span
-        {
-            count = call.arguments.len();
-        }
-        open.extend(body.parts());
-    }
-    let parameters: Vec<String> = (1..=count).map(|number| format!("x{number}")).collect();
-    let at = top_level(analysis, diagnostic.span).end;
-    let text = format!(
-        "\n\n(define-control-program {name} ({})\n  (declare (primitive)\n    (duration (simple :lower-bound 5 :upper-bound 10))))",
-        parameters.join(" ")
-    );
+/// What the message itself suggests, as edits of the text.
+fn suggested<'a>(analysis: &'a Analysis, diagnostic: &'a Diagnostic) -> impl Iterator<Item = Fix> + 'a {
+    let sources = std::slice::from_ref(&analysis.source);
     let end_of_line = if analysis.text().contains("\r\n") { "\r\n" } else { "\n" };
-    Some((
-        format!("Create the program `{name}`"),
-        vec![(Span { source: 0, start: at, end: at }, text.replace('\n', end_of_line))],
-    ))
-}
-
-/// `:contingent t` for a duration whose end is heard late.
-fn make_contingent(analysis: &Analysis, diagnostic: &Diagnostic) -> Option<Fix> {
-    let duration = analysis.program.programs.iter().filter_map(|program| program.duration.as_ref()).find(
-        |duration| duration.span.start <= diagnostic.span.start && diagnostic.span.end <= duration.span.end,
-    )?;
-    let form = innermost(analysis, duration.span.start)?;
-    let items = form.list()?;
-    let written = items.iter().position(|item| item.keyword() == Some("contingent"));
-    let edit = match written.and_then(|at| items.get(at + 1)) {
-        Some(value) => (value.span, "t".to_string()),
-        None => {
-            let at = form.span.end - 1;
-            (Span { source: 0, start: at, end: at }, " :contingent t".to_string())
-        }
-    };
-    Some(("Let Nature decide: `:contingent t`".to_string(), vec![edit]))
-}
-
-/// The two bounds the other way round.
-fn swap(analysis: &Analysis, diagnostic: &Diagnostic) -> Option<Fix> {
-    let (a, b) = (diagnostic.span, diagnostic.labels.first()?.span);
-    let text = |span| analysis.source.slice(span).to_string();
-    let apart = a.end <= b.start || b.end <= a.start;
-    let is_value = |text: &str| !text.is_empty() && !text.starts_with("(simple");
-    (apart && is_value(&text(a)) && is_value(&text(b)))
-        .then(|| ("Swap the bounds".to_string(), vec![(a, text(b)), (b, text(a))]))
+    diagnostic.suggestions.iter().map(move |suggestion| {
+        let edits = suggestion.edits.iter();
+        let edit = |edit: &Edit| (edit.span, edit.text(sources).replace('\n', end_of_line));
+        (suggestion.title.clone(), edits.map(edit).collect())
+    })
 }
 
 /// What settles a conflict: more in one bound of ours, and slack where ends have to meet. Each is tried before it is offered,

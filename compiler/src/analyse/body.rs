@@ -3,7 +3,7 @@
 use super::Analyser;
 use crate::ast;
 use crate::code::Code;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Edit};
 use crate::evaluate;
 use crate::form::clip;
 use crate::nearest::nearest;
@@ -139,18 +139,20 @@ impl Analyser<'_> {
         let name = clip(&ident.name);
         let numbered = ident.name.split_once('#').map(|(program, _)| program);
         let numbered = numbered.filter(|program| programs.clone().any(|name| name == *program));
-        let help = match (numbered.map(clip), nearest(&ident.name, labels.chain(programs))) {
-            (Some(program), _) => {
-                format!("The first occurrence is called `{program}`, the second `{program}#2`.")
-            }
-            (None, Some(near)) => format!("Did you mean `{near}`?"),
-            (None, None) => format!("Name the occurrence you mean: `(label {name} (...))`."),
-        };
-        self.problems.push(
+        let near = nearest(&ident.name, labels.chain(programs));
+        let problem =
             Diagnostic::error(Code::UnknownLabel, ident.span, format!("nothing is labelled `{name}`"))
-                .primary("neither a label nor a program")
-                .help(help),
-        );
+                .primary("neither a label nor a program");
+        self.problems.push(match (numbered, near) {
+            (Some(program), _) => {
+                let shown = clip(program);
+                problem.help(format!(
+                    "The second occurrence is `{shown}#2`. For the first of several, give it a name: `(label x ({shown} ...))`."
+                ))
+            }
+            (None, Some(near)) => problem.meant(ident.span, Some(ident.with_name(near))),
+            (None, None) => problem.help(format!("Name the occurrence you mean: `(label {name} (...))`.")),
+        });
     }
 
     #[inline(never)]
@@ -169,7 +171,14 @@ impl Analyser<'_> {
                 true => self.names.unknown_program(&call.program, home),
                 false => Diagnostic::error(Code::UnknownProgram, span, ""),
             };
-            self.problems.push(problem);
+            let is_missing = problem.code == Code::UnknownProgram && call.program.package.is_none();
+            self.problems.push(match is_missing {
+                true => problem.suggest(
+                    format!("Create the program `{}`", call.program.name),
+                    [Edit::after(self.definition.span, missing_program(call))],
+                ),
+                false => problem,
+            });
             return None;
         };
         let target = &self.program.programs[program];
@@ -195,6 +204,16 @@ impl Analyser<'_> {
     fn argument(&mut self, written: &ast::Argument) -> Expression {
         self.resolver().argument(written)
     }
+}
+
+/// A definition of the program that is called.
+fn missing_program(call: &ast::Call) -> String {
+    let parameters: Vec<String> = (1..=call.arguments.len()).map(|number| format!("x{number}")).collect();
+    format!(
+        "\n\n(define-control-program {} ({})\n  (declare (primitive)\n    (duration (simple :lower-bound 5 :upper-bound 10))))",
+        call.program.name,
+        parameters.join(" ")
+    )
 }
 
 fn shape(target: &ast::ControlProgram) -> String {

@@ -5,7 +5,7 @@ use kirk_network::{Bound, Duration};
 use super::Analyser;
 use crate::ast;
 use crate::code::Code;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Edit};
 use crate::form::clip;
 use crate::source::Span;
 use crate::typed::{Amount, AmountValue, Bounds, Timing};
@@ -38,16 +38,18 @@ impl Analyser<'_> {
         let mut delay = Bounds { lower: nothing(span), upper: nothing(span), span };
         if let Some(written) = &duration.delay {
             if !duration.contingent {
-                let (at, label, help) = match duration.contingent_nil {
+                let (at, label, help, edit) = match duration.contingent_nil {
                     Some(nil) => (
                         nil,
                         "not contingent, as is said here",
                         "Change `:contingent nil` to `:contingent t`, or take the delay out.",
+                        Edit::replace(nil, "t"),
                     ),
                     None => (
                         duration.span,
                         "`:contingent t` is missing in this duration",
                         "Add `:contingent t` after `(simple ...)`, or take the delay out.",
+                        Edit::after(duration.bounds.span, " :contingent t"),
                     ),
                 };
                 self.problems.push(
@@ -58,7 +60,8 @@ impl Analyser<'_> {
                     )
                     .primary("only what Nature decides has to be observed")
                     .label(at, label)
-                    .help(help),
+                    .help(help)
+                    .suggest("Let Nature decide: `:contingent t`", [edit]),
                 );
             }
             delay = self.delay(written);
@@ -95,9 +98,13 @@ impl Analyser<'_> {
             && let Some(problem) = reversed(least, most, &bounds, low, high)
         {
             let help = "Without a `:lower-bound`, it is 0: the first event comes first. For the other way round, swap the two events.";
-            let problem = match most < Duration::ZERO && written.lower.is_none() {
-                true => problem.primary("no lower bound is given").help(help),
-                false => problem,
+            let problem = match (&written.lower, &written.upper) {
+                (None, _) => problem.primary("no lower bound is given").help(help),
+                (Some(lower), Some(upper)) => {
+                    let (lower, upper) = (lower.span, upper.span);
+                    problem.suggest("Swap the bounds", [Edit::copy(lower, upper), Edit::copy(upper, lower)])
+                }
+                (Some(_), None) => problem,
             };
             let problem = self.with_definition(problem, written.lower.as_ref());
             let problem = self.with_definition(problem, written.upper.as_ref());

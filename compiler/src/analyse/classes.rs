@@ -4,7 +4,7 @@ use super::names::Names;
 use crate::ast::{Class, Condition, ControlProgram, Ident, Program, Slot, SlotOf, Type, Value, ValueKind};
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
-use crate::form::clip;
+use crate::form::{Form, FormKind, clip, write};
 use crate::nearest::nearest;
 use crate::problem::Problems;
 
@@ -55,9 +55,7 @@ impl<'a> Classes<'a> {
                             format!("the class `{}` is not defined", clip(&parent.name)),
                         )
                         .primary("extended here")
-                        .maybe_help(
-                            nearest(&parent.name, known).map(|near| format!("Did you mean `{near}`?")),
-                        ),
+                        .meant(parent.span, nearest(&parent.name, known).map(|near| parent.with_name(near))),
                     );
                 }
             }
@@ -123,22 +121,21 @@ impl<'a> Classes<'a> {
         if found.is_empty() && !problems.has_lost(wanted) {
             let known = all().flat_map(|slot| &slot.accessors).map(|name| name.name.as_str());
             let slot_itself = all().find(|slot| slot.name.name == *wanted);
-            let help = match (slot_itself, nearest(wanted, known)) {
-                (Some(_), _) => {
-                    Some("There is a slot of this name, but it has no `:reader` or `:accessor`.".to_string())
+            let problem = Diagnostic::error(
+                Code::UnknownAccessor,
+                slot.accessor.span,
+                format!("no class has an accessor `{}`", clip(wanted)),
+            )
+            .primary("not the `:reader` or `:accessor` of any slot");
+            problems.push(match slot_itself {
+                Some(_) => {
+                    problem.help("There is a slot of this name, but it has no `:reader` or `:accessor`.")
                 }
-                (None, Some(near)) => Some(format!("Did you mean `{near}`?")),
-                (None, None) => None,
-            };
-            problems.push(
-                Diagnostic::error(
-                    Code::UnknownAccessor,
-                    slot.accessor.span,
-                    format!("no class has an accessor `{}`", clip(wanted)),
-                )
-                .primary("not the `:reader` or `:accessor` of any slot")
-                .maybe_help(help),
-            );
+                None => {
+                    let near = nearest(wanted, known).map(|near| slot.accessor.with_name(near));
+                    problem.meant(slot.accessor.span, near)
+                }
+            });
         }
         if let ValueKind::Name(None, name) = &slot.object.kind
             && !definition.parameters.iter().any(|parameter| parameter.name == *name)
@@ -230,7 +227,7 @@ fn check_slot(class: &Class, slot: &Slot, program: &Program, names: &Names, prob
                         format!("`{}` is not a type kirk knows", clip(&name.name)),
                     )
                     .primary("values of this slot are not checked")
-                    .maybe_help(nearest(&name.name, known).map(|near| format!("Did you mean `{near}`?"))),
+                    .meant(name.span, nearest(&name.name, known).map(|near| name.with_name(near))),
                 );
             }
             _ => {}
@@ -293,15 +290,18 @@ fn wrong_type(slot: &Slot, value: &Value) -> Diagnostic {
                 ValueKind::Text(text) => Some(text.as_str()),
                 _ => None,
             });
-            nearest(text, texts).map(|near| format!("Did you mean \"{near}\"?"))
+            nearest(text, texts)
         }
         _ => None,
     };
     let message = format!("the slot `{}` cannot be {}", clip(&slot.name.name), show(&value.kind));
-    Diagnostic::error(Code::WrongType, value.span, message)
+    let problem = Diagnostic::error(Code::WrongType, value.span, message)
         .primary(format!("{allowed} was expected"))
-        .label(slot.name.span, "the slot is defined here")
-        .maybe_help(near)
+        .label(slot.name.span, "the slot is defined here");
+    match near.map(|near| write(&Form { span: value.span, kind: FormKind::String(near.to_string()) })) {
+        Some(near) => problem.help(format!("Did you mean {near}?")).change(value.span, near),
+        None => problem,
+    }
 }
 
 fn show(kind: &ValueKind) -> String {
@@ -318,5 +318,5 @@ fn unknown(span: crate::source::Span, name: &str, definition: &ControlProgram) -
     let parameters = definition.parameters.iter().map(|parameter| parameter.name.as_str());
     Diagnostic::error(Code::UnknownName, span, format!("nothing is called `{}`", clip(name)))
         .primary(format!("not a parameter of `{}`", clip(&definition.name.name)))
-        .maybe_help(nearest(name, parameters).map(|near| format!("Did you mean `{near}`?")))
+        .meant(span, nearest(name, parameters))
 }

@@ -88,9 +88,9 @@ impl Resolver<'_> {
         }
     }
 
-    pub(super) fn report(&mut self, problem: Option<Diagnostic>) {
+    pub(super) fn report(&mut self, problem: evaluate::Wrong) {
         if let Some(problem) = problem {
-            self.problems.push(problem);
+            self.problems.push(*problem);
         }
     }
 
@@ -162,16 +162,15 @@ impl Resolver<'_> {
             "day" | "days" => Some("days"),
             _ => None,
         };
-        let help = match unit {
-            Some(unit) => Some(format!("A unit stands before its number, in a list with it: `({unit} 5)`.")),
-            None => near.map(|near| format!("Did you mean `{near}`?")),
-        };
-        self.problems.push(
-            Diagnostic::error(Code::UnknownName, ident.span, format!("nothing is called `{}`", clip(&ident.name)))
-                .primary("neither a parameter or variable here nor a named number")
-                .help("A value is a number, a string, `t`, `nil`, a parameter, a name from `let`, `dotimes` or `defparameter`. A symbol is quoted: `'name`.")
-                .maybe_help(help),
-        );
+        let problem = Diagnostic::error(Code::UnknownName, ident.span, format!("nothing is called `{}`", clip(&ident.name)))
+            .primary("neither a parameter or variable here nor a named number")
+            .help("A value is a number, a string, `t`, `nil`, a parameter, a name from `let`, `dotimes` or `defparameter`. A symbol is quoted: `'name`.");
+        self.problems.push(match unit {
+            Some(unit) => {
+                problem.help(format!("A unit stands before its number, in a list with it: `({unit} 5)`."))
+            }
+            None => problem.meant(ident.span, near.map(|near| ident.with_name(near))),
+        });
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::ast::{Ident, Package, Program};
+use crate::ast::{Ident, Import, Package, Program};
 use crate::code::Code;
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::form::clip;
@@ -97,15 +97,15 @@ impl Names {
             }
         }
         for import in &package.imports {
-            let Some(from) = &import.package else { continue };
-            let Some(from) = self.check_package(home, from, import.span, problems) else { continue };
-            let wanted = problems.wants(import.span.source) && !problems.has_lost(&import.name);
-            if wanted && !self.has(&from, &import.name) {
-                problems.push(self.not_there(&from, import, "imported"));
+            let Import { from, name } = import;
+            let Some(from) = self.check_package(home, &from.name, from.span, problems) else { continue };
+            let wanted = problems.wants(name.span.source) && !problems.has_lost(&name.name);
+            if wanted && !self.has(&from, &name.name) {
+                problems.push(self.not_there(&from, name, "imported"));
                 // Where it is called, it is not missed again.
-                problems.lose_text(&import.name);
+                problems.lose_text(&name.name);
             }
-            self.imports.insert((home.clone(), import.name.clone()), from);
+            self.imports.insert((home.clone(), name.name.clone()), from);
         }
         for export in &package.exports {
             let wanted = problems.wants(export.span.source) && !problems.has_lost(&export.name);
@@ -128,12 +128,12 @@ impl Names {
         let tables = [&self.programs, &self.numbers, &self.classes];
         let known = tables.into_iter().flat_map(|table| table.keys());
         let known = known.filter(|(home, _)| home == package).map(|(_, name)| name.as_str());
-        let near = nearest(&name.name, known).map(|near| format!("Did you mean `{near}`?"));
+        let near = nearest(&name.name, known);
         let message = format!("the package `{}` has no `{}`", clip(package), clip(&name.name));
         Diagnostic::error(Code::UnknownName, name.span, message)
             .primary(format!("{how} here"))
             .help("A package has the programs, classes and named numbers that are defined after its `in-package`.")
-            .maybe_help(near)
+            .designated(name.span, near)
     }
 
     /// The package that a name of a package means in the package `home`.
@@ -165,14 +165,14 @@ impl Names {
         if let Some(package) = &ident.package
             && !self.packages.iter().any(|known| known == self.package(home, package))
         {
-            let near = nearest(package, self.packages()).map(|near| format!("Did you mean `{near}:{name}`?"));
+            let near = nearest(package, self.packages()).map(|near| format!("{near}:{}", ident.name));
             return Diagnostic::error(
                 Code::UnknownPackage,
                 ident.span,
                 format!("there is no package `{}`", clip(package)),
             )
             .primary("not a package of this source")
-            .maybe_help(near);
+            .meant(ident.span, near);
         }
         if let Some(instead) = instead_of_operator(&ident.name).filter(|_| ident.package.is_none()) {
             return Diagnostic::error(Code::UnknownOperator, ident.span, format!("RMPL has no `{name}`"))
@@ -189,19 +189,24 @@ impl Names {
                 format!("there is no operator `{name}`"),
             )
             .primary("neither an operator nor a program")
-            .help(format!("Did you mean `{near}`?"));
+            .meant(ident.span, Some(near));
         }
         let elsewhere = self.programs.keys().find(|(_, program)| *program == ident.name);
-        let help = match (elsewhere, near) {
-            (Some((package, _)), _) => format!("The package `{package}` has one: write `{package}:{name}`."),
-            (None, Some(near)) => format!("Did you mean `{near}`?"),
-            (None, None) => format!(
+        let problem = Diagnostic::error(
+            Code::UnknownProgram,
+            ident.span,
+            format!("the program `{name}` is not defined"),
+        )
+        .primary("called here");
+        match (elsewhere, near) {
+            (Some((package, _)), _) => problem
+                .help(format!("The package `{package}` has one: write `{package}:{name}`."))
+                .change(ident.span, format!("{package}:{}", ident.name)),
+            (None, Some(near)) => problem.meant(ident.span, Some(ident.with_name(near))),
+            (None, None) => problem.help(format!(
                 "Define it: `(define-control-program {name} () (declare (primitive) (duration (simple :lower-bound 5 :upper-bound 10))))`."
-            ),
-        };
-        Diagnostic::error(Code::UnknownProgram, ident.span, format!("the program `{name}` is not defined"))
-            .primary("called here")
-            .help(help)
+            )),
+        }
     }
 
     fn find(&self, table: &Table, ident: &Ident, home: &str) -> Option<usize> {
@@ -227,7 +232,7 @@ impl Names {
             return Some(name.to_string());
         }
         if !builtin {
-            let near = nearest(name, self.packages()).map(|near| format!("Did you mean `{near}`?"));
+            let near = nearest(name, self.packages());
             problems.push(
                 Diagnostic::error(
                     Code::UnknownPackage,
@@ -235,7 +240,7 @@ impl Names {
                     format!("the package `{}` is not defined", clip(name)),
                 )
                 .primary("not a package of this source")
-                .maybe_help(near),
+                .designated(span, near),
             );
         }
         None

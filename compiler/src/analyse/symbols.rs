@@ -8,8 +8,8 @@ use std::collections::BTreeMap;
 use super::body::occurs;
 use super::names::Names;
 use crate::ast::{
-    self, Amount, AmountKind, Argument, Body, Bounds, Condition, ControlProgram, EventOf, Ident, Program,
-    Type, Value, ValueKind,
+    self, Amount, AmountKind, Argument, Body, Bounds, Condition, ControlProgram, EventOf, Ident, Import,
+    Program, Type, Value, ValueKind,
 };
 use crate::problem::Problems;
 use crate::source::Span;
@@ -177,11 +177,15 @@ impl<'a> Finder<'a> {
                     self.place(*symbol, used.span, false);
                 }
             }
-            for import in &package.imports {
-                if let Some(index) = self.names.program(import, &package.name.name) {
-                    self.place(self.first.programs + index, import.span, false);
-                } else if let Some(index) = self.names.number(import, &package.name.name) {
-                    self.place(self.first.numbers + index, import.span, false);
+            for Import { from, name } in &package.imports {
+                if let Some(symbol) = self.packages.get(from.name.as_str()) {
+                    self.place(*symbol, from.span, false);
+                }
+                let name = Ident { package: Some(from.name.clone()), ..name.clone() };
+                if let Some(index) = self.names.program(&name, &package.name.name) {
+                    self.place(self.first.programs + index, name.span, false);
+                } else if let Some(index) = self.names.number(&name, &package.name.name) {
+                    self.place(self.first.numbers + index, name.span, false);
                 }
             }
         }

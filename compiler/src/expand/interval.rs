@@ -98,12 +98,12 @@ impl Expander<'_> {
         })
     }
 
-    fn report(&mut self, problem: Option<Diagnostic>, place: &Place<'_>) {
+    fn report(&mut self, problem: evaluate::Wrong, place: &Place<'_>) {
         if let Some(problem) = problem {
             let here =
                 place.call == problem.span || problem.labels.iter().any(|label| label.span == place.call);
             self.problems.push(match here {
-                true => problem,
+                true => *problem,
                 false => problem.label(place.call, "with the arguments of this call"),
             });
         }

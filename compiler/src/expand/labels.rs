@@ -75,7 +75,7 @@ impl Expander<'_> {
                 }
                 (from, to) => {
                     for problem in [from.err(), to.err()].into_iter().flatten() {
-                        self.problems.push(problem);
+                        self.problems.push(*problem);
                     }
                 }
             }

@@ -123,7 +123,7 @@ pub(super) struct Index<'a> {
 
 impl Index<'_> {
     /// The episode a name means.
-    pub(super) fn find(&self, wanted: &Wanted<'_>) -> Result<&str, Diagnostic> {
+    pub(super) fn find(&self, wanted: &Wanted<'_>) -> Result<&str, Box<Diagnostic>> {
         let arguments: Option<Vec<ValueKind>> =
             wanted.arguments.as_ref().map(|values| values.iter().map(|value| value.kind.clone()).collect());
         let arguments_key = arguments.as_deref().map(key);
@@ -142,15 +142,19 @@ impl Index<'_> {
                 match &places[from..to] {
                     [] => scope = self.scopes.scopes[at].parent,
                     [(_, only)] => return Ok(&self.scopes.named[*only].episode),
-                    several => return Err(self.ambiguous(wanted, arguments.as_deref(), several)),
+                    several => return Err(self.ambiguous(wanted, arguments.as_deref(), several).into()),
                 }
             }
         }
-        Err(self.missing(wanted, arguments.as_deref(), &targets))
+        Err(self.missing(wanted, arguments.as_deref(), &targets).into())
     }
 
     /// The occurrence whose name is written out: `a#2`.
-    fn occurrence(&self, wanted: &Wanted<'_>, arguments: Option<&[ValueKind]>) -> Result<&str, Diagnostic> {
+    fn occurrence(
+        &self,
+        wanted: &Wanted<'_>,
+        arguments: Option<&[ValueKind]>,
+    ) -> Result<&str, Box<Diagnostic>> {
         let found = self.episodes.get(wanted.name).map(|position| &self.scopes.named[*position]);
         let is_meant = |named: &&Named| {
             wanted.program.map(Target::Program).as_ref() == Some(&named.target)
@@ -164,13 +168,14 @@ impl Index<'_> {
             .primary("looked for in the whole mission");
         let of_it = |named: &&Named| wanted.program.map(Target::Program).as_ref() == Some(&named.target);
         let mut all = self.scopes.named.iter().filter(of_it);
-        Err(match (all.next(), all.next_back()) {
+        let problem = match (all.next(), all.next_back()) {
             (None, _) => problem.help("It is defined, but nothing that the mission does leads to it."),
             (Some(only), None) => problem.help(format!("There is `{}` alone.", only.episode)),
             (Some(first), Some(last)) => {
                 problem.help(format!("There is `{}` up to `{}`.", first.episode, last.episode))
             }
-        })
+        };
+        Err(problem.into())
     }
 
     fn ambiguous(

@@ -2,13 +2,13 @@
 
 use kirk_network::{Duration, ParseDurationError};
 
-use super::ident;
+use super::{head, ident};
 use crate::ast::{Amount, AmountKind};
 use crate::calculate::Operator;
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::form::{Form, FormKind, clip};
-use crate::nearest::did_you_mean;
+use crate::nearest::nearest;
 use crate::problem::Problems;
 
 const UNITS: [(&str, i64); 5] = [
@@ -123,9 +123,9 @@ fn list(form: &Form, what: &str, problems: &mut Problems) -> AmountKind {
                 Diagnostic::error(Code::UnknownUnit, form.span, message)
                     .primary(format!("{what} was expected"))
                     .help("The units are `(microseconds 250)`, `(seconds 90)`, `(minutes 5)`, `(hours 1.5)` and `(days 1)`; arithmetic is `+`, `-`, `*`, `/`, `1+`, `1-`, `min`, `max` and `mod`.")
-                    .maybe_help(match word {
-                        "mins" | "m" => Some("Did you mean `minutes`?".to_string()),
-                        _ => did_you_mean(word, near),
+                    .meant(head(form), match word {
+                        "mins" | "m" => Some("minutes"),
+                        _ => nearest(word, near),
                     }),
             );
             return AmountKind::Error;
@@ -139,9 +139,8 @@ fn list(form: &Form, what: &str, problems: &mut Problems) -> AmountKind {
             _ => "at least one number",
         };
         let message = format!("`{word}` takes {number}, not {}", rest.len());
-        let at = form.list().and_then(|items| items.first()).map_or(form.span, |first| first.span);
         problems.push(
-            Diagnostic::error(Code::WrongShape, at, message)
+            Diagnostic::error(Code::WrongShape, head(form), message)
                 .primary("in this calculation")
                 .help(format!("Write `{example}`."))
                 .maybe_help((word == "min").then(|| "Minutes are written `(minutes 5)`.".to_string())),

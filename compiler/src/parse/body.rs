@@ -2,12 +2,12 @@
 
 use super::amount::{amount, is_calculation, number};
 use super::options::{flag, options};
-use super::{binding, ident, label, text_of, unexpected};
+use super::{binding, head, ident, label, text_of, unexpected};
 use crate::ast::{Argument, Body, Bounds, Call, Group, Value, ValueKind, Wait, Within};
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::form::{Form, FormKind, clip};
-use crate::nearest::{did_you_mean, nearest};
+use crate::nearest::nearest;
 use crate::problem::Problems;
 
 /// The operators of bodies.
@@ -142,7 +142,7 @@ fn operator<'a>(first: &'a Form, rest: &[Form], problems: &mut Problems) -> Opti
             format!("there is no operator `{}`", clip(word)),
         )
         .primary("neither an operator nor a program")
-        .help(format!("Did you mean `{meant}`?")),
+        .meant(first.span, Some(meant)),
     );
     Some(meant)
 }
@@ -165,7 +165,8 @@ pub(super) fn bounds(form: &Form, word: &str, problems: &mut Problems) -> Option
                         "Write `({word} :lower-bound 5 :upper-bound 10)`; either bound may be left out."
                     ),
                 );
-                problems.push(problem.maybe_help(found.and_then(|(found, _)| did_you_mean(found, [word]))));
+                let near = found.and_then(|(found, _)| nearest(found, [word]));
+                problems.push(problem.meant(head(form), near));
             }
             None
         }

@@ -114,10 +114,8 @@ fn slot(form: &Form, problems: &mut Problems) -> Option<Slot> {
                     format!("a slot has no option `:{}`", clip(option)),
                 )
                 .primary("left out, with its value")
-                .help(match nearest(option, SLOT_OPTIONS) {
-                    Some(near) => format!("Did you mean `:{near}`?"),
-                    None => format!("The slot options are :{}.", SLOT_OPTIONS.join(", :")),
-                }),
+                .help(format!("The slot options are :{}.", SLOT_OPTIONS.join(", :")))
+                .meant(keyword.span, nearest(option, SLOT_OPTIONS).map(|near| format!(":{near}"))),
             ),
         }
     }

@@ -72,7 +72,8 @@ fn wrong_time(word: &str, when: &Form) -> Diagnostic {
     let help = known.iter().map(|time| format!("`({word} :{time} ...)`")).collect::<Vec<_>>().join(" or ");
     Diagnostic::error(Code::BadCondition, when.span, format!("`{word}` needs {wanted}"))
         .primary("found this")
-        .help(near.map_or(format!("Write {help}."), |near| format!("Did you mean `:{near}`?")))
+        .help(format!("Write {help}."))
+        .meant(when.span, near.map(|near| format!(":{near}")))
 }
 
 /// `(accessor object)`.

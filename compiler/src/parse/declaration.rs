@@ -3,12 +3,12 @@
 use super::amount::{amount, is_calculation};
 use super::condition::condition;
 use super::options::{flag, options};
-use super::{expected, one_of, text_of, twice, unexpected};
+use super::{expected, head, one_of, text_of, twice, unexpected};
 use crate::ast::{Amount, AmountKind, Bounds, ControlProgram, DurationOf};
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::form::{Form, FormKind, clip};
-use crate::nearest::{did_you_mean, nearest};
+use crate::nearest::nearest;
 use crate::problem::Problems;
 use crate::source::Span;
 
@@ -79,7 +79,7 @@ pub(super) fn declare(declarations: &[Form], program: &mut ControlProgram, probl
             "ignore" | "ignorable" => {}
             _ => {
                 program.damaged = true;
-                let at = item.list().and_then(|items| items.first()).map_or(item.span, |first| first.span);
+                let at = head(item);
                 problems.push(
                     Diagnostic::error(
                         Code::UnknownDeclaration,
@@ -88,7 +88,7 @@ pub(super) fn declare(declarations: &[Form], program: &mut ControlProgram, probl
                     )
                     .primary("not understood here")
                     .help(format!("The declarations are {}.", one_of(&DECLARATIONS)))
-                    .maybe_help(did_you_mean(word, DECLARATIONS)),
+                    .meant(at, nearest(word, DECLARATIONS)),
                 );
             }
         }
@@ -176,7 +176,7 @@ fn duration(form: &Form, items: &[Form], problems: &mut Problems) -> Option<Dura
                 let given = simple.list().filter(|_| rest.is_empty()).unwrap_or(items);
                 let numbers: Vec<String> = given.iter().map_while(number).collect();
                 let help = match (simple.call(), numbers.as_slice()) {
-                    (Some((word, _)), _) => did_you_mean(word, ["simple"]),
+                    (Some(_), _) => None,
                     (None, [both]) => {
                         Some(format!("Write `(duration (simple :lower-bound {both} :upper-bound {both}))`."))
                     }
@@ -185,7 +185,10 @@ fn duration(form: &Form, items: &[Form], problems: &mut Problems) -> Option<Dura
                     )),
                     (None, []) => None,
                 };
-                problems.push(unexpected(simple, "`(simple ...)`", SHAPE).maybe_help(help));
+                let near = simple.call().and_then(|(word, _)| nearest(word, ["simple"]));
+                problems.push(
+                    unexpected(simple, "`(simple ...)`", SHAPE).maybe_help(help).meant(head(simple), near),
+                );
             }
             return None;
         }

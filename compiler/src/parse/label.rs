@@ -6,7 +6,7 @@ use crate::ast::{Argument, Between, Body, EventOf, Ident, Labelled};
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::form::{Form, FormKind, clip};
-use crate::nearest::did_you_mean;
+use crate::nearest::nearest;
 use crate::problem::Problems;
 
 /// Parses `label`.
@@ -118,14 +118,14 @@ fn event(form: &Form, problems: &mut Problems) -> Option<EventOf> {
         Some([first, ..]) if first.word().is_some() => {
             let word = first.word().unwrap_or_default();
             let meant = match word {
-                "begin" | "begins" | "from" | "starts" => Some("Did you mean `start`?".to_string()),
-                "finish" | "stop" | "ends" | "until" => Some("Did you mean `end`?".to_string()),
-                _ => did_you_mean(word, ["start", "end"]),
+                "begin" | "begins" | "from" | "starts" => Some("start"),
+                "finish" | "stop" | "ends" | "until" => Some("end"),
+                _ => nearest(word, ["start", "end"]),
             };
             Diagnostic::error(Code::WrongShape, first.span, format!("`{}` is not an event", clip(word)))
                 .primary("`start` or `end` was expected")
                 .help(SHAPE)
-                .maybe_help(meant)
+                .meant(first.span, meant)
         }
         _ => {
             let problem = unexpected(form, "an event", SHAPE);

@@ -47,19 +47,21 @@ pub(super) fn options<'a, const N: usize>(
                     values[*slot].get_or_insert(&MISSING);
                 }),
             }
-            let meant: Vec<String> = meant.iter().map(|slot| format!("`:{}`", known[*slot])).collect();
-            problems.push(
-                Diagnostic::error(
-                    Code::UnknownKeyword,
-                    form.span,
-                    format!("`{owner}` has no keyword `:{}`", clip(word)),
-                )
-                .primary("not understood here")
-                .help(match meant.is_empty() {
-                    false => format!("Did you mean {}?", meant.join(" or ")),
-                    true => format!("`{owner}` understands {}.", list(&known, owner)),
-                }),
-            );
+            let meant: Vec<String> = meant.iter().map(|slot| format!(":{}", known[*slot])).collect();
+            let problem = Diagnostic::error(
+                Code::UnknownKeyword,
+                form.span,
+                format!("`{owner}` has no keyword `:{}`", clip(word)),
+            )
+            .primary("not understood here")
+            .help(match meant.is_empty() {
+                false => format!("Did you mean `{}`?", meant.join("` or `")),
+                true => format!("`{owner}` understands {}.", list(&known, owner)),
+            });
+            // The shortest delay alone says nothing.
+            let longest = forms.iter().any(|form| form.keyword() == Some("max-observation-delay"));
+            let choices = meant.iter().filter(|name| longest || *name != ":min-observation-delay");
+            problems.push(choices.fold(problem, |problem, name| problem.change(form.span, name)));
             continue;
         };
         if let Some(first) = firsts[slot] {
@@ -98,14 +100,13 @@ pub(super) fn flag(form: &Form, keyword: &str, problems: &mut Problems) -> bool 
         _ => {
             if !form.is_error() {
                 let wanted = format!("`t` or `nil` after `:{keyword}`");
-                let yes = matches!(form.word(), Some("true" | "yes" | "on"));
-                let no = matches!(form.word(), Some("false" | "no" | "off"));
-                let help = match (yes, no) {
-                    (true, _) => "Did you mean `t`?",
-                    (_, true) => "Did you mean `nil`?",
-                    _ => "`t` means yes and `nil` means no.",
+                let meant = match form.word() {
+                    Some("true" | "yes" | "on") => Some("t"),
+                    Some("false" | "no" | "off") => Some("nil"),
+                    _ => None,
                 };
-                problems.push(unexpected(form, &wanted, help));
+                let help = "`t` means yes and `nil` means no.";
+                problems.push(unexpected(form, &wanted, help).meant(form.span, meant));
             }
             true
         }
@@ -141,6 +142,7 @@ fn no_colon(form: &Form, word: &str) -> Diagnostic {
     Diagnostic::error(Code::WrongShape, form.span, format!("the colon of `:{word}` is missing"))
         .primary("a keyword was expected")
         .help(format!("Write `:{word}`: without the colon it is the name of something else."))
+        .change(form.span, format!(":{word}"))
 }
 
 /// Something stands where a keyword belongs: numbers without their keywords, or a unit after its number.

@@ -1,11 +1,11 @@
 //! `(defpackage #:p (:use #:q) ...)` and `(in-package #:p)`.
 
 use super::{DEFAULT_PACKAGE, expected, unexpected};
-use crate::ast::{Ident, Package};
+use crate::ast::{Ident, Import, Package};
 use crate::code::Code;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Edit};
 use crate::form::{Form, clip};
-use crate::nearest::{did_you_mean, nearest};
+use crate::nearest::nearest;
 use crate::problem::Problems;
 
 /// Those that say nothing about names are read and have no effect.
@@ -65,7 +65,7 @@ pub(super) fn package(form: &Form, rest: &[Form], problems: &mut Problems) -> Op
             Some("import-from" | "shadowing-import-from") => {
                 let listed = names(values, problems);
                 if let Some((from, imported)) = listed.split_first() {
-                    let import = |name: &Ident| Ident { package: Some(from.name.clone()), ..name.clone() };
+                    let import = |name: &Ident| Import { from: from.clone(), name: name.clone() };
                     package.imports.extend(imported.iter().map(import));
                 }
             }
@@ -78,7 +78,7 @@ pub(super) fn package(form: &Form, rest: &[Form], problems: &mut Problems) -> Op
                 )
                 .primary("not an option of `defpackage`")
                 .help(format!("The options are :{}.", OPTIONS.join(", :")))
-                .maybe_help(did_you_mean(word, OPTIONS).map(|help| help.replacen('`', "`:", 1))),
+                .meant(keyword.span, nearest(word, OPTIONS).map(|near| format!(":{near}"))),
             ),
             None => problems.push(unexpected(keyword, "a keyword such as `:use`", "Options are lists.")),
         }
@@ -102,19 +102,20 @@ pub(super) fn entered(
     }
     if wanted != DEFAULT_PACKAGE {
         let known = packages.iter().map(|package| package.name.name.as_str());
-        let help = match nearest(&wanted, known) {
-            Some(near) => format!("Did you mean `{near}`?"),
-            None => format!("Put `(defpackage #:{})` before it.", clip(&wanted)),
-        };
-        problems.push(
-            Diagnostic::error(
-                Code::UnknownPackage,
-                name.span,
-                format!("the package `{}` is not defined", clip(&wanted)),
-            )
-            .primary("not defined above")
-            .help(help),
-        );
+        let problem = Diagnostic::error(
+            Code::UnknownPackage,
+            name.span,
+            format!("the package `{}` is not defined", clip(&wanted)),
+        )
+        .primary("not defined above");
+        let definition = format!("(defpackage #:{wanted})");
+        problems.push(match nearest(&wanted, known) {
+            Some(near) => problem.designated(name.span, Some(near)),
+            None => problem.help(format!("Put `{}` before it.", clip(&definition))).suggest(
+                format!("Define the package `{wanted}`"),
+                [Edit::before(form.span, format!("{definition}\n"))],
+            ),
+        });
     }
     Some(wanted)
 }

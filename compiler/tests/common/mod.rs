@@ -7,7 +7,9 @@
     reason = "each test binary uses a part"
 )]
 
-use kirk_compiler::{Compilation, Diagnostic, LineIndex, Options, Origin, Plan, Severity, Source};
+use kirk_compiler::{
+    Compilation, Diagnostic, LineIndex, Options, Origin, Plan, Severity, Source, Span, Suggestion,
+};
 use kirk_network::{Bound, Network};
 
 pub fn compile(text: &str) -> Compilation {
@@ -67,8 +69,24 @@ pub fn diagnostics(text: &str, diagnostics: &[Diagnostic]) -> String {
         if let Some(help) = &d.help {
             out.push_str(&format!("    = {help}\n"));
         }
+        for suggestion in &d.suggestions {
+            out.push_str(&format!("    > {}\n", suggestion.title));
+        }
     }
     out
+}
+
+/// The text after a suggestion.
+pub fn applied(text: &str, suggestion: &Suggestion) -> String {
+    let sources = [Source::new("mission.rmpl", text)];
+    let mut edits: Vec<(Span, &str)> = suggestion.edits.iter().map(|e| (e.span, e.text(&sources))).collect();
+    edits.sort_by_key(|(span, _)| *span);
+    assert!(edits.windows(2).all(|pair| pair[0].0.end <= pair[1].0.start), "{suggestion:?} overlaps itself");
+    let mut after = text.to_string();
+    for (span, new) in edits.into_iter().rev() {
+        after.replace_range(span.start as usize..span.end as usize, new);
+    }
+    after
 }
 
 /// One line for each constraint, with the words it comes from.

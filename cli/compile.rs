@@ -11,6 +11,7 @@ use serde::Serialize;
 
 use crate::args::{Common, Compile, Stage, StageFormat};
 use crate::check::{judge, too_large};
+use crate::foreign::visible;
 use crate::input::{Input, load_all};
 use crate::json::line;
 use crate::output::{Status, complain, deliver};
@@ -29,7 +30,10 @@ pub(crate) fn compile(arguments: &Compile, common: &Common) -> io::Result<Status
             return Ok(Status::Wrong);
         }
     };
-    deliver(&text, arguments.output.as_deref())
+    match (arguments.format, &arguments.output) {
+        (StageFormat::Text, None) => deliver(&visible(&text), None),
+        (_, output) => deliver(&text, output.as_deref()),
+    }
 }
 
 /// Why nothing was emitted.

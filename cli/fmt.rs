@@ -5,7 +5,7 @@ use std::io;
 use kirk_compiler::{Code, Diagnostic, Source, Span, format};
 
 use crate::args::{Common, Fmt};
-use crate::input::{is_network, text};
+use crate::input::{Unreadable, is_network, text};
 use crate::output::{Status, print, print_line};
 use crate::report::Reporter;
 
@@ -26,7 +26,10 @@ fn fmt_one(file: &str, check: bool, common: &Common) -> io::Result<Status> {
     };
     let before = match text(file) {
         Ok(text) => text,
-        Err(diagnostic) => return refuse("", &[*diagnostic]),
+        Err(unreadable) => {
+            let Unreadable { text, diagnostic } = *unreadable;
+            return refuse(&text, &[diagnostic]);
+        }
     };
     if is_network(file, &before) {
         let message = format!("`{name}` is a network, and no program to lay out");

@@ -42,7 +42,7 @@ type Reader = fn(&str) -> Result<(Network, Places), Vec<ReadProblem>>;
 pub(crate) fn load(file: &str, selection: &Selection) -> Input {
     let text = match text(file) {
         Ok(text) => text,
-        Err(diagnostic) => return Input::broken(shown(file), *diagnostic),
+        Err(unreadable) => return Input::broken(shown(file), *unreadable),
     };
     match kind(file, &text) {
         Kind::Network(reader) => {
@@ -65,15 +65,20 @@ pub(crate) fn load_all(files: &[String], selection: &Selection) -> Input {
         let place = Span::new(index as u32, 0, 0);
         let problem = |message| Diagnostic::error(Code::CannotRead, place, message);
         let text = if files[..index].contains(file) {
-            Err(problem(format!("`{}` is given twice", shown(file))))
+            Err(Unreadable::at_all(problem(format!("`{}` is given twice", shown(file)))))
         } else {
-            text(file).map_err(|diagnostic| Diagnostic { span: place, ..*diagnostic })
+            text(file)
         };
-        let text = text.unwrap_or_else(|diagnostic| {
-            diagnostics.push(diagnostic);
-            String::new()
-        });
-        if !text.is_empty() && is_network(file, &text) {
+        let (text, whole) = match text {
+            Ok(text) => (text, true),
+            Err(unreadable) => {
+                let Unreadable { text, diagnostic } = *unreadable;
+                let span = Span { source: index as u32, ..diagnostic.span };
+                diagnostics.push(Diagnostic { span, ..diagnostic });
+                (text, false)
+            }
+        };
+        if whole && is_network(file, &text) {
             let message = format!("`{}` is a network and cannot be part of a program", shown(file));
             diagnostics.push(
                 problem(message).help("Several files are compiled as one program. Give a network alone."),
@@ -93,23 +98,56 @@ pub(crate) fn shown(file: &str) -> &str {
     if file == "-" { "<stdin>" } else { file }
 }
 
-/// The text of an input file.
-pub(crate) fn text(file: &str) -> Result<String, Box<Diagnostic>> {
-    let start = Span::default();
-    let bytes =
-        read(file, LARGEST_NETWORK).map_err(|message| Diagnostic::error(Code::CannotRead, start, message))?;
-    let text = String::from_utf8(bytes).map_err(|error| {
-        let valid = error.utf8_error().valid_up_to();
-        let line = error.as_bytes()[..valid].iter().filter(|&&b| b == b'\n').count();
+/// Why a file is no text to go on with.
+pub(crate) struct Unreadable {
+    /// As much of it as can be shown, up to what is wrong.
+    pub(crate) text: String,
+    /// What is wrong.
+    pub(crate) diagnostic: Diagnostic,
+}
+
+impl Unreadable {
+    /// There is nothing to show.
+    fn at_all(diagnostic: Diagnostic) -> Box<Unreadable> {
+        Box::new(Unreadable { text: String::new(), diagnostic })
+    }
+
+    /// There are bytes in it, at a place, that are no UTF-8.
+    fn bytes(bytes: &[u8], valid: usize) -> Box<Unreadable> {
+        let line = bytes[..valid].iter().filter(|&&b| b == b'\n').count();
         let message = format!("this is not UTF-8 text (line {}, byte {valid})", line + 1);
-        Diagnostic::error(Code::NotText, start, message).help(
+        // The rest of the line, if it is one.
+        let rest = bytes[valid..].iter().take(MOST_SHOWN).position(|&byte| byte == b'\n');
+        let end = (valid + rest.unwrap_or(MOST_SHOWN)).min(bytes.len());
+        let text = String::from_utf8_lossy(&bytes[..end]).into_owned();
+        // What is wrong was replaced by one character.
+        let span = Span::new(0, valid, valid + char::REPLACEMENT_CHARACTER.len_utf8());
+        let diagnostic = Diagnostic::error(Code::NotText, span, message).help(
             "kirk reads RMPL and networks as text; is this the right file, or a compiled or compressed one?",
-        )
-    })?;
+        );
+        Box::new(Unreadable { text, diagnostic })
+    }
+}
+
+/// How much is shown of a line after what is wrong in it.
+const MOST_SHOWN: usize = 100;
+
+/// A text without the mark some programs put at its beginning (BOM). JSON has none.
+pub(crate) fn without_mark(text: &str) -> &str {
+    text.strip_prefix('\u{feff}').unwrap_or(text)
+}
+
+/// The text of an input file.
+pub(crate) fn text(file: &str) -> Result<String, Box<Unreadable>> {
+    let start = Span::default();
+    let bytes = read(file, LARGEST_NETWORK)
+        .map_err(|message| Unreadable::at_all(Diagnostic::error(Code::CannotRead, start, message)))?;
+    let text = String::from_utf8(bytes)
+        .map_err(|error| Unreadable::bytes(error.as_bytes(), error.utf8_error().valid_up_to()))?;
     if text.len() as u64 > LARGEST_PROGRAM && !is_network(file, &text) {
         let message =
             format!("this file has {} bytes; kirk reads programs of up to {LARGEST_PROGRAM}", text.len());
-        return Err(Diagnostic::error(Code::TooLong, start, message).into());
+        return Err(Unreadable::at_all(Diagnostic::error(Code::TooLong, start, message)));
     }
     Ok(text)
 }
@@ -186,7 +224,8 @@ fn program(sources: Vec<Source>, selection: &Selection) -> Input {
 }
 
 fn network(name: &str, text: String, reader: Reader) -> Input {
-    let read = reader(&text);
+    let text = without_mark(&text);
+    let read = reader(text);
     let sources = vec![Source::new(name, text)];
     let mut input = Input {
         sources,
@@ -227,12 +266,13 @@ impl Input {
     /// Standard input, which was read already.
     pub(crate) fn twice() -> Input {
         let message = "standard input is given twice, and can be read only once";
-        Input::broken(shown("-"), Diagnostic::error(Code::CannotRead, Span::default(), message))
+        let diagnostic = Diagnostic::error(Code::CannotRead, Span::default(), message);
+        Input::broken(shown("-"), *Unreadable::at_all(diagnostic))
     }
 
-    fn broken(name: &str, diagnostic: Diagnostic) -> Input {
+    fn broken(name: &str, Unreadable { text, diagnostic }: Unreadable) -> Input {
         Input {
-            sources: vec![Source::new(name, "")],
+            sources: vec![Source::new(name, text)],
             diagnostics: vec![diagnostic],
             compilation: None,
             network: None,

@@ -9,6 +9,7 @@ mod conflict;
 mod execute;
 mod explain;
 mod fmt;
+mod foreign;
 mod generate;
 mod input;
 mod json;

@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 
 use crate::args::Color;
+use crate::foreign::visible;
 
 /// The exit status of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -36,26 +37,26 @@ pub(crate) fn deliver(text: &str, file: Option<&str>) -> io::Result<Status> {
     Ok(Status::Yes)
 }
 
-/// Prints a line to standard output.
+/// Prints a line for people to standard output.
 pub(crate) fn print_line(text: &str) -> io::Result<()> {
-    print(&format!("{text}\n"))
+    print(&format!("{}\n", visible(text)))
 }
 
-/// Prints a text to standard error as it is.
+/// Prints a text for people to standard error.
 pub(crate) fn eprint(text: &str) -> io::Result<()> {
-    io::stderr().lock().write_all(text.as_bytes())
+    io::stderr().lock().write_all(visible(text).as_bytes())
 }
 
 /// Prints a message about the command line to standard error.
 pub(crate) fn complain(message: &str) {
     // If standard error is closed there is nobody to tell.
-    let _ = writeln!(io::stderr().lock(), "error: {message}");
+    let _ = writeln!(io::stderr().lock(), "error: {}", visible(message));
 }
 
 /// Prints a remark that is not part of what was asked for to standard error.
 pub(crate) fn remark(message: &str) {
     // If standard error is closed there is nobody to tell.
-    let _ = writeln!(io::stderr().lock(), "{message}");
+    let _ = writeln!(io::stderr().lock(), "{}", visible(message));
 }
 
 /// True if a terminal is to show colours: as asked for, or unless `NO_COLOR` asks for none.

@@ -10,6 +10,7 @@ use kirk_compiler::{Diagnostic, LineIndex, Severity, Source, Span, Suggestion};
 use serde::Serialize;
 
 use crate::args::{Color, Common};
+use crate::foreign::{as_long, one_line, visible};
 
 /// The sources that diagnostics point into.
 pub(crate) struct Reporter<'a> {
@@ -36,7 +37,7 @@ impl<'a> Reporter<'a> {
         };
         let mut files = SimpleFiles::new();
         for source in self.sources {
-            files.add(source.name.as_str(), source.text.as_str());
+            files.add(one_line(&source.name), as_long(&source.text));
         }
         let stream = StandardStream::stderr(color);
         for diagnostic in diagnostics {
@@ -60,7 +61,7 @@ impl<'a> Reporter<'a> {
         };
         let mut cooked = codespan::Diagnostic::new(severity)
             .with_code(diagnostic.code.to_string())
-            .with_message(&diagnostic.message);
+            .with_message(visible(&diagnostic.message));
         let places = std::iter::once((diagnostic.span, &diagnostic.primary))
             .chain(diagnostic.labels.iter().map(|label| (label.span, &label.message)));
         for (index, (span, message)) in places.enumerate() {
@@ -68,17 +69,17 @@ impl<'a> Reporter<'a> {
             if self.is_showable(span) {
                 let style =
                     if index == 0 { codespan::LabelStyle::Primary } else { codespan::LabelStyle::Secondary };
-                cooked
-                    .labels
-                    .push(codespan::Label::new(style, span.source as usize, range).with_message(message));
+                cooked.labels.push(
+                    codespan::Label::new(style, span.source as usize, range).with_message(visible(message)),
+                );
             } else if let Some((line, column)) = self.position(span.source, span.start) {
                 let name = &self.sources[span.source as usize].name;
                 let message = if message.is_empty() { "here" } else { message };
-                cooked.notes.push(format!("{name}:{line}:{column}: {message}"));
+                cooked.notes.push(visible(&format!("{name}:{line}:{column}: {message}")).into_owned());
             }
         }
         if let Some(help) = &diagnostic.help {
-            cooked.notes.push(help.clone());
+            cooked.notes.push(visible(help).into_owned());
         }
         cooked
     }

@@ -17,7 +17,7 @@ use crate::args::{Common, Nature, Run, StrategyName, TextOrJson};
 use crate::check::too_large;
 use crate::conflict;
 use crate::execute;
-use crate::input::{load_all, read};
+use crate::input::{load_all, read, without_mark};
 use crate::json::line;
 use crate::news::treatment;
 use crate::output::{Status, eprint, print};
@@ -177,7 +177,7 @@ impl Observations {
                 return;
             }
         };
-        let text = String::from_utf8_lossy(&bytes).into_owned();
+        let text = without_mark(&String::from_utf8_lossy(&bytes)).to_string();
         let parsed: Result<ObservationFile, _> = serde_json::from_str(&text);
         self.sources.push(Source::new(file, text.as_str()));
         match parsed {

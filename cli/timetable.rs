@@ -2,11 +2,13 @@
 
 use kirk_runtime::{Execution, How, Outcome, Row};
 
+use crate::foreign::one_line;
+
 /// One line for each row: time, event, how, and where the event must have happened if it was heard late.
 pub(crate) fn timetable(execution: &Execution) -> String {
     let end = match (&execution.outcome, &execution.failure) {
         (Outcome::Failed, Some(failure)) => {
-            format!("failed at {} s: {} ({})", failure.time.0, failure.detail, failure.reason)
+            format!("failed at {} s: {} ({})", failure.time.0, one_line(&failure.detail), failure.reason)
         }
         (Outcome::Failed, None) => "failed".to_string(),
         (Outcome::Running, _) => format!("at {} s", execution.makespan.0),
@@ -17,14 +19,15 @@ pub(crate) fn timetable(execution: &Execution) -> String {
         cells.iter().map(|cell| cell[column].chars().count()).chain([heading.len()]).max().unwrap_or(0)
     };
     let (time, event) = (width(0, "time"), width(1, "event"));
-    let mut text = format!("{}: {end}\n\n  {:>time$}  {:<event$}  how\n", execution.program, "time", "event");
+    let mut text =
+        format!("{}: {end}\n\n  {:>time$}  {:<event$}  how\n", one_line(&execution.program), "time", "event");
     for [at, name, how] in &cells {
         text.push_str(&format!("  {at:>time$}  {name:<event$}  {how}\n"));
     }
     text
 }
 
-/// Time, event and how.
+/// Time, event and how, as a terminal may show them.
 pub(crate) fn cells(row: &Row) -> [String; 3] {
     let time = row.time.map_or("-".to_string(), |time| time.0.to_string());
     let mut how = row.how.word().to_string();
@@ -43,5 +46,5 @@ pub(crate) fn cells(row: &Row) -> [String; 3] {
             how.push_str(&format!(", happened in [{}, {}]", low.0, high.0));
         }
     }
-    [time, row.event.clone(), how]
+    [time, one_line(&row.event).into_owned(), how]
 }

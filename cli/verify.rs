@@ -10,7 +10,7 @@ use kirk_runtime::{Execution, replay, verify as check};
 use serde::Serialize;
 
 use crate::args::{Common, Selection, TextOrJson, Verify};
-use crate::input::{load_all, read, shown};
+use crate::input::{load_all, read, shown, without_mark};
 use crate::json::line;
 use crate::output::{Status, complain, print, print_line};
 use crate::report::Reporter;
@@ -88,7 +88,7 @@ fn read_execution(file: &str) -> Result<Execution, Box<(Source, Diagnostic)>> {
             |replayed| Ok(replayed.executive.execution(replayed.at, false)),
         );
     }
-    let text = String::from_utf8_lossy(&bytes).into_owned();
+    let text = without_mark(&String::from_utf8_lossy(&bytes)).to_string();
     let read: Result<Execution, _> = serde_json::from_str(&text);
     if let Ok(execution) = &read
         && execution.format != FORMAT

@@ -8,6 +8,7 @@ use std::thread::JoinHandle;
 use kirk_executive::{AnswerNews, Desk, Happening, Said};
 use serde::Deserialize;
 
+use crate::foreign::one_line;
 use crate::live;
 use crate::output::remark;
 use crate::timetable::cells;
@@ -63,13 +64,13 @@ pub(crate) fn screen(
 
 /// Prints what commands of the driver say, each line with whom it is from, until no driver is there any more.
 fn pass_on(said: &Receiver<Said>) {
-    said.iter().for_each(|Said { who, line }| remark(&format!("{who} | {line}")));
+    said.iter().for_each(|Said { who, line }| remark(&one_line(&format!("{who} | {line}"))));
 }
 
 fn lines(happening: &Happening) -> Vec<String> {
     match happening {
         Happening::Sent { at, event, attempt, .. } if *attempt > 1 => {
-            vec![format!("{:>10}  {event}  handed over again, attempt {attempt}", at.0)]
+            vec![format!("{:>10}  {}  handed over again, attempt {attempt}", at.0, one_line(event))]
         }
         Happening::Sent { .. } | Happening::Over { .. } => Vec::new(),
         Happening::Fixed { rows, .. } => rows
@@ -81,9 +82,9 @@ fn lines(happening: &Happening) -> Vec<String> {
             .collect(),
         Happening::Failed { at, id, reason } => {
             let event = id.split_once('/').map_or(id.as_str(), |(_, event)| event);
-            vec![format!("{:>10}  {event}  not confirmed: {reason}", at.0)]
+            vec![format!("{:>10}  {}  not confirmed: {}", at.0, one_line(event), one_line(reason))]
         }
-        Happening::Warning { at, text } => vec![format!("{:>10}  {text}", at.0)],
+        Happening::Warning { at, text } => vec![format!("{:>10}  {}", at.0, one_line(text))],
     }
 }
 
@@ -108,6 +109,7 @@ struct Body {
 }
 
 fn names(line: &str) -> Result<Vec<String>, String> {
+    let line = line.trim_start_matches('\u{feff}').trim();
     if line.starts_with('{') {
         return serde_json::from_str(line).map(|Body { events }| events).map_err(|error| {
             format!("`{line}` is no news: {error}; expected an event, or {{\"event-ids\": [...]}}")

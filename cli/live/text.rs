@@ -1,6 +1,9 @@
-//! Text in columns: widths are those on the screen, where some letters are twice as wide as others.
+//! Text in columns: widths are those on the screen, where some letters are twice as wide as others. What a terminal would obey
+//! is spelt out.
 
 use ratatui::text::Span;
+
+use crate::foreign::{one_line, visible};
 
 /// The width of a text on the screen.
 pub(crate) fn width(text: &str) -> usize {
@@ -16,6 +19,7 @@ pub(crate) fn fill(text: &str, wanted: usize) -> String {
 
 /// A text cut in its middle if it is too wide: names differ in their beginnings and their ends.
 pub(crate) fn cut(text: &str, most: usize) -> String {
+    let text = &*one_line(text);
     if width(text) <= most {
         return text.to_string();
     }
@@ -29,6 +33,7 @@ pub(crate) fn cut(text: &str, most: usize) -> String {
 
 /// A text cut at its end if it is too wide.
 pub(crate) fn shorten(text: &str, most: usize) -> String {
+    let text = &*one_line(text);
     if width(text) <= most {
         return text.to_string();
     }
@@ -38,7 +43,7 @@ pub(crate) fn shorten(text: &str, most: usize) -> String {
 /// A text in lines of words.
 pub(crate) fn wrap(text: &str, most: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
-    for word in text.split_whitespace() {
+    for word in visible(text).split_whitespace() {
         match lines.last_mut() {
             Some(line) if width(line) + 1 + width(word) <= most => {
                 line.push(' ');

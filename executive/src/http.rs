@@ -6,12 +6,14 @@
 //! | `connections` | who is connected, and who makes room when too many are |
 //! | `routes` | a request in, a response out |
 //! | `news` | the body of a message |
+//! | `explained` | what hyper refuses by itself, with a reason |
 //! | `front` | what is asked of the loop, and how long we wait for it |
 //! | `events` | the stream of happenings |
 
 mod access;
 mod connections;
 mod events;
+mod explained;
 mod front;
 mod news;
 mod routes;
@@ -39,6 +41,7 @@ use tokio::time::{sleep, timeout};
 use self::access::Access;
 pub(crate) use self::access::{listen, read_token};
 use self::connections::{Connection, Connections};
+use self::explained::Explained;
 use self::front::Front;
 use crate::desk::Desk;
 
@@ -213,7 +216,7 @@ async fn serve_connection(mut stream: TcpStream, connection: Rc<Connection>, hou
             .half_close(true)
             .max_headers(HEADERS)
             .max_buf_size(HEAD)
-            .serve_connection(TokioIo::new(&mut stream), answer);
+            .serve_connection(TokioIo::new(Explained::new(&mut stream)), answer);
         let mut talk = std::pin::pin!(talk);
         tokio::select! {
             _ = &mut talk => return,

@@ -17,6 +17,9 @@ fn is_harmless(character: char) -> bool {
 }
 
 pub(super) fn check(template: &str, handovers: &[Handover]) -> Result<(), String> {
+    if template.trim().is_empty() {
+        return Err("the driver command is empty; leave it out if there is no driver".to_string());
+    }
     let places = places(template);
     if places > 2 {
         return Err(format!(
@@ -146,6 +149,7 @@ mod tests {
         assert_eq!(fill("robot ~A", "E", "C"), "robot E");
         assert_eq!(fill("robot", "E", "C"), "robot");
         assert!(check("~A ~A ~A", &[]).is_err());
+        assert!(check("", &[]).is_err() && check(" \n", &[]).is_err());
         assert!(check("~A ~~A ~A", &[]).is_ok());
     }
 }

@@ -240,6 +240,7 @@ fn listen(
     answers: &UnboundedSender<Value>,
 ) {
     let line = String::from_utf8_lossy(line);
+    let line = line.trim_start_matches('\u{feff}');
     if line.trim().is_empty() {
         return;
     }

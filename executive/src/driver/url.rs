@@ -43,8 +43,18 @@ impl Address {
                 "`{url}`: a password in the address would end up in journals; kirk does not use it"
             ));
         }
+        // Without a port the scheme says which; one that is none must not be taken for that.
+        let after_host = authority.strip_prefix(uri.host().unwrap_or_default()).unwrap_or_default();
+        let port = match (after_host, uri.port_u16()) {
+            ("", _) => 80,
+            (_, Some(port @ 1..)) => port,
+            (given, _) => {
+                let given = given.trim_start_matches(':');
+                return Err(format!("`{url}`: `{given}` is no port; a port is a number from 1 to 65535"));
+            }
+        };
         let path = uri.path_and_query().map_or("/".to_string(), |path| path.to_string());
-        Ok(Address { authority, socket: (host, uri.port_u16().unwrap_or(80)), path })
+        Ok(Address { authority, socket: (host, port), path })
     }
 }
 
@@ -107,4 +117,27 @@ async fn post(address: &Address, sending: &Sending) -> Result<(), Failed> {
     };
     connection.abort();
     result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_port_that_is_none_is_refused_and_not_taken_for_the_usual_one() {
+        let socket = |url: &str| Address::parse(url).map(|address| address.socket);
+        assert_eq!(socket("http://127.0.0.1/x"), Ok(("127.0.0.1".to_string(), 80)));
+        assert_eq!(socket("http://robot:8080"), Ok(("robot".to_string(), 8080)));
+        assert_eq!(socket("http://[::1]:65535/"), Ok(("::1".to_string(), 65535)));
+        assert_eq!(socket("http://[::1]/"), Ok(("::1".to_string(), 80)));
+        for url in [
+            "http://127.0.0.1:99999/",
+            "http://robot:0/",
+            "http://[::1]:65536/",
+            "http://robot:/x",
+            "http://robot:8o/",
+        ] {
+            assert!(socket(url).is_err(), "{url}: {:?}", socket(url));
+        }
+    }
 }

@@ -4,6 +4,7 @@
 use std::fs::File;
 use std::io::{self, Read};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener};
+use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 
 use hyper::header::{AUTHORIZATION, HOST, ORIGIN};
@@ -44,8 +45,17 @@ const LONGEST: usize = 4096;
 pub(crate) fn read_token(path: &Path) -> Result<Vec<u8>, String> {
     let file = path.display();
     let mut text = Vec::new();
-    let read = File::open(path).and_then(|file| file.take(LONGEST as u64 + 2).read_to_end(&mut text));
-    read.map_err(|error| format!("cannot read the token in {file}: {error}"))?;
+    let cannot = |error: io::Error| format!("cannot read the token in {file}: {error}");
+    let open = File::open(path).map_err(cannot)?;
+    let metadata = open.metadata().map_err(cannot)?;
+    let mode = metadata.permissions().mode() & 0o777;
+    // A pipe is only for whoever made it, whatever its mode says.
+    if metadata.is_file() && mode & 0o007 != 0 {
+        return Err(format!(
+            "the token in {file} is open to everybody on this machine (mode {mode:o}), so it keeps no secret: `chmod 600 {file}`"
+        ));
+    }
+    open.take(LONGEST as u64 + 2).read_to_end(&mut text).map_err(cannot)?;
     let token = text.trim_ascii();
     if token.len() < SHORTEST {
         let length = token.len();

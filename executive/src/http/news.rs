@@ -7,6 +7,8 @@ use serde::de::{Error, IgnoredAny, MapAccess, Visitor};
 
 /// The events a message names, or why it is none.
 pub(super) fn read(body: &[u8]) -> Result<Vec<String>, String> {
+    // Some programs put a mark before it (BOM), which JSON does not know.
+    let body = body.strip_prefix("\u{feff}".as_bytes()).unwrap_or(body);
     let mut json = serde_json::Deserializer::from_slice(body);
     let events = json.deserialize_map(Message).and_then(|events| json.end().map(|()| events));
     events.map_err(|error| {

@@ -246,7 +246,7 @@ fn a_malformed_message_is_told_what_is_wrong_and_how_it_should_be() {
         (br#"{"event-ids": ["scan:end"]} {}"#, "trailing characters"),
         (br#"{"event-ids": ["scan:end"]"#, "EOF while parsing an object"),
         (b"{\"event-ids\": [\"\xff\xfe\"]}", "invalid unicode code point"),
-        (b"\xef\xbb\xbf{\"event-ids\": []}", "expected value"),
+        (b"\xef\xbb\xbf\xef\xbb\xbf{\"event-ids\": []}", "expected value"),
         (b"\x00\x01\x02", "expected value"),
     ];
     for (body, part) in cases {

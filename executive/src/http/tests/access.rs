@@ -1,5 +1,7 @@
 //! Who is let in, and who is not.
 
+use std::fs::Permissions;
+use std::os::unix::fs::PermissionsExt;
 use std::path::PathBuf;
 
 use super::super::{listen, read_token};
@@ -44,6 +46,7 @@ fn a_token_is_read_without_the_space_around_it_if_it_is_any_good() {
     let read = |bytes: &[u8]| {
         let path = folder.path().join("token");
         std::fs::write(&path, bytes).unwrap();
+        std::fs::set_permissions(&path, Permissions::from_mode(0o640)).unwrap();
         read_token(&path)
     };
     assert_eq!(read(b" 0123456789abcdef\r\n"), Ok(TOKEN.as_bytes().to_vec()));
@@ -61,6 +64,14 @@ fn a_token_is_read_without_the_space_around_it_if_it_is_any_good() {
             .starts_with("cannot read the token in no/such/file")
     );
     assert!(read_token(folder.path()).unwrap_err().starts_with("cannot read the token in "));
+    // One that everybody may read, or write.
+    for mode in [0o644, 0o602] {
+        let path = folder.path().join("open");
+        std::fs::write(&path, TOKEN).unwrap();
+        std::fs::set_permissions(&path, Permissions::from_mode(mode)).unwrap();
+        let refused = read_token(&path).unwrap_err();
+        assert!(refused.contains(&format!("(mode {mode:o})")) && refused.contains("chmod 600"), "{refused}");
+    }
     // One that never ends.
     assert!(read_token(&PathBuf::from("/dev/zero")).is_err());
 }

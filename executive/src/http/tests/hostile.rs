@@ -52,6 +52,32 @@ impl Client {
 }
 
 #[test]
+fn a_request_that_comes_after_one_that_makes_no_sense_is_not_lost_without_a_word() {
+    let rig = Rig::new();
+    let mut client = rig.client();
+    let good = r#"{"event-ids": ["scan:end"]}"#;
+    let first = format!("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: {}\r\n\r\n{good}", good.len());
+    let bad = "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: -5\r\n\r\n";
+    client.send(format!("{first}{bad}{first}"));
+    assert_eq!(client.answer().status, 200);
+    let answer = client.answer();
+    assert_eq!(answer.status, 400);
+    assert!(answer.head.contains("connection: close"), "{}", answer.head);
+    assert!(
+        answer.body.contains("Content-Length") && answer.body.contains("was not read"),
+        "{}",
+        answer.body
+    );
+    assert!(client.is_closed());
+}
+
+#[test]
+fn a_mark_before_the_news_does_no_harm() {
+    let answer = Rig::new().post("\u{feff}{\"event-ids\": [\"scan:end\"]}");
+    assert_eq!(answer.status, 200, "{}", answer.body);
+}
+
+#[test]
 fn garbage_ends_the_connection_and_nothing_else() {
     let rig = Rig::new();
     let head = "POST / HTTP/1.1\r\nHost: localhost\r\n";
@@ -72,7 +98,10 @@ fn garbage_ends_the_connection_and_nothing_else() {
         let mut client = rig.client();
         client.send(&request);
         let shown = &request[..request.len().min(100)];
-        assert_eq!(client.head().0, status, "{shown}");
+        let answer = client.answer();
+        assert_eq!(answer.status, status, "{shown}");
+        let error: serde_json::Value = serde_json::from_str(&answer.body).unwrap();
+        assert!(error["error"].as_str().is_some_and(|error| error.len() > 20), "{shown}: {}", answer.body);
     }
     assert_eq!(rig.get("/healthz").status, 200);
 }

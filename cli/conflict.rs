@@ -3,7 +3,7 @@
 use kirk_compiler::total;
 use kirk_compiler::{Code, Diagnostic, Span, explain_conflict};
 use kirk_network::json::Seconds;
-use kirk_network::{Conflict, Network, Part, Share};
+use kirk_network::{Conflict, Duration, Network, Part, Share};
 use serde::Serialize;
 
 use crate::input::Input;
@@ -14,7 +14,7 @@ pub(crate) fn diagnostic(conflict: &Conflict, network: &Network, input: &Input) 
     match &input.origins {
         Some((origins, program)) => explain_conflict(conflict, network, origins, *program),
         None => {
-            let missing = kirk_network::Duration::from_micros(-conflict.total.as_micros());
+            let missing = -conflict.total;
             let message = format!(
                 "`{}` cannot be executed in every case: {missing} s are missing between these bounds",
                 network.name()
@@ -75,7 +75,7 @@ fn sentence(share: &Share, network: &Network) -> String {
         }
     };
     let times = if share.times > 1 { format!(" ({} times)", share.times) } else { String::new() };
-    let sign = if share.amount.as_micros() < 0 { "" } else { "+" };
+    let sign = if share.amount < Duration::ZERO { "" } else { "+" };
     format!("{text}{times}: {sign}{}", share.amount)
 }
 

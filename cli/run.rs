@@ -98,7 +98,7 @@ pub(crate) fn run(arguments: &Run, common: &Common) -> io::Result<Status> {
 
 /// The record of a mission that was not started because it cannot be promised.
 fn not_executed(conflict: &Conflict, program: &str) -> Execution {
-    let missing = Duration::from_micros(-conflict.total.as_micros());
+    let missing = -conflict.total;
     Execution {
         format: FORMAT.to_string(),
         program: program.to_string(),
@@ -229,7 +229,7 @@ impl Observations {
             )),
             Some(event) => match self.by_event.iter().find(|heard| heard.event == event) {
                 // Another name of a merged event may say the same again.
-                Some(known) if known.time.as_micros() == time.as_micros() => None,
+                Some(known) if known.time.since_origin() == time => None,
                 Some(known) => Some((
                     format!("`{name}` is observed twice"),
                     match known.name.eq_ignore_ascii_case(name) {
@@ -241,7 +241,7 @@ impl Observations {
                     },
                 )),
                 None => {
-                    let time = Time::from_micros(time.as_micros());
+                    let time = Time::after_origin(time);
                     self.by_event.push(Heard { event, name: name.to_string(), time, span });
                     None
                 }

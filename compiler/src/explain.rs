@@ -22,7 +22,7 @@ pub fn explain_conflict(
     origins: &Origins,
     program: Span,
 ) -> Diagnostic {
-    let missing = Duration::from_micros(conflict.total.as_micros().saturating_neg());
+    let missing = -conflict.total;
     let name = network.name();
     let message =
         format!("`{name}` cannot be executed in every case: {missing} s are missing between these bounds");
@@ -113,7 +113,7 @@ pub(crate) fn sum(members: &[Share]) -> String {
     shares.sort_by_key(|share| share.amount < Duration::ZERO);
     let mut sum = String::new();
     for share in &shares {
-        let magnitude = Duration::from_micros(share.amount.as_micros().saturating_abs());
+        let magnitude = share.amount.abs();
         let sign = match (share.amount < Duration::ZERO, sum.is_empty()) {
             (true, true) => "-",
             (true, false) => " - ",

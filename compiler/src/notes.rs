@@ -6,9 +6,10 @@ mod latency;
 use bounds::notes_on_bounds;
 use latency::notes_on_latency;
 
-use std::collections::BTreeMap;
+use std::collections::HashMap;
 
-use kirk_network::{Bound, Delay, Duration, Network};
+use kirk_network::merge::merge;
+use kirk_network::{Bound, ContingentLink, Delay, Duration, EventId, Network};
 
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
@@ -30,27 +31,23 @@ pub(crate) fn notes(plan: &Plan, root: &Episode) -> Vec<Diagnostic> {
 ///
 /// "At the same time" makes the two events one, so the start happens when the end does, and not when it is heard.
 fn notes_on_merging(network: &Network, origins: &Origins, root: &Episode) -> Vec<Diagnostic> {
-    let mut classes = Classes { parent: (0..network.events().len() as u32).collect() };
-    for requirement in network.requirements() {
-        let zero = Bound::Finite(Duration::ZERO);
-        if requirement.lower == zero && requirement.upper == zero {
-            classes.join(requirement.from.0, requirement.to.0);
-        }
-    }
-    // For every class, the delayed links that end in it.
-    let mut delayed: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
-    for (index, link) in network.contingents().iter().enumerate() {
-        if link.delay != Delay::NONE {
-            delayed.entry(classes.find(link.to.0)).or_default().push(index);
-        }
-    }
-    if delayed.is_empty() {
+    let is_delayed = |link: &ContingentLink| link.delay != Delay::NONE;
+    if !network.contingents().iter().any(is_delayed) {
         return Vec::new();
     }
+    let event_of = merge(network).event_of;
+    // For every merged event, the delayed link that ends in it.
+    let delayed: HashMap<EventId, usize> = network
+        .contingents()
+        .iter()
+        .enumerate()
+        .filter(|(_, link)| is_delayed(link))
+        .map(|(index, link)| (event_of[link.to.index()], index))
+        .collect();
     let mut notes = Vec::new();
     for (episode, (start, _)) in events_of(root) {
         if episode.kind == Kind::Primitive
-            && let Some([link]) = delayed.get(&classes.find(start.0)).map(Vec::as_slice)
+            && let Some(link) = delayed.get(&event_of[start.index()])
         {
             let contingent = &network.contingents()[*link];
             let Some(origin) = origins.contingents.get(*link) else { break };
@@ -79,25 +76,4 @@ fn note(episode: &Episode, before: &str, delay: Delay, places: [Span; 4]) -> Dia
         "The two events are one moment, and nobody knows of it before the news. If `{name}` is started by the executive, \
          put the two into a `(sequence (:slack t) ...)`."
     ))
-}
-
-struct Classes {
-    parent: Vec<u32>,
-}
-
-impl Classes {
-    fn find(&mut self, mut event: u32) -> u32 {
-        while self.parent[event as usize] != event {
-            let grand = self.parent[self.parent[event as usize] as usize];
-            self.parent[event as usize] = grand;
-            event = grand;
-        }
-        event
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.find(a), self.find(b));
-        let (low, high) = (a.min(b), a.max(b));
-        self.parent[high as usize] = low;
-    }
 }

@@ -3,8 +3,8 @@
 use kirk_compiler::Span;
 use kirk_compiler::ast::Body;
 use kirk_compiler::episode::Kind;
+use kirk_network::Time;
 use kirk_network::windows::Window;
-use kirk_network::{Duration, Time};
 
 use crate::mission::{Judgement, Mission};
 use crate::view::View;
@@ -98,7 +98,7 @@ fn verdict(mission: &Mission) -> String {
     let network = &mission.plan.network;
     match &mission.verdict {
         Judgement::Uncontrollable(conflict) => {
-            let missing = Duration::from_micros(conflict.total.as_micros().saturating_neg());
+            let missing = -conflict.total;
             format!("not controllable: {missing} s are missing between bounds that do not go together")
         }
         Judgement::TooLarge => "no verdict: the durations add up to too much".to_string(),

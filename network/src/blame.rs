@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use crate::conflict::{Conflict, Part, Share};
 use crate::controllability::{Cycle, Step};
 use crate::model::{EventId, Network};
-use crate::reduce::{Reduction, Source};
+use crate::reduce::{Reduction, Source, Violation};
+use crate::stnu::TooLarge;
 use crate::time::Duration;
 use crate::trees::{Trees, link_index};
 
@@ -24,20 +25,19 @@ impl Reduction {
     }
 }
 
-/// The conflict of a requirement side that Nature alone can violate: `to` may come too long after `from`.
-pub(crate) fn natures_conflict(
-    network: &Network,
-    trees: &Trees,
-    source: Source,
-    from: EventId,
-    to: EventId,
-) -> Conflict {
-    let mut tally = Tally { network, times: BTreeMap::new() };
-    let meet = trees.meet(network, from, to);
-    tally.add(source.part(), 1);
-    tally.path(meet, to, Part::LinkUpper, 1);
-    tally.path(meet, from, Part::LinkLower, 1);
-    tally.conflict()
+impl Violation {
+    /// The conflict between the bound and the links that Nature violates it with.
+    ///
+    /// # Errors
+    /// [`TooLarge`] if the durations add up to more than 64-bit microseconds can hold.
+    pub(crate) fn conflict(&self, network: &Network) -> Result<Conflict, TooLarge> {
+        let mut tally = Tally { network, times: BTreeMap::new() };
+        let meet = Trees::new(network)?.meet(network, self.from, self.to);
+        tally.add(self.source.part(), 1);
+        tally.path(meet, self.to, Part::LinkUpper, 1);
+        tally.path(meet, self.from, Part::LinkLower, 1);
+        Ok(tally.conflict())
+    }
 }
 
 impl Source {

@@ -62,7 +62,7 @@ fn first_conflict(
 ) -> Result<Option<Conflict>, TooLarge> {
     match reduction {
         Err(ReduceError::TooLarge) => Err(TooLarge),
-        Err(ReduceError::Never(conflict)) => Ok(Some(conflict.clone())),
+        Err(ReduceError::Never(violation)) => Ok(Some(violation.conflict(network)?)),
         Ok(reduction) => {
             Ok(negative_cycle(&reduction.stnu)?.map(|cycle| reduction.conflict(network, &cycle)))
         }

@@ -14,7 +14,7 @@ mod potential;
 mod record;
 
 use crate::radix::RadixQueue;
-use crate::stnu::{Edge, NONE, Rows, Stnu, TooLarge, add, within_limit};
+use crate::stnu::{Edge, LIMIT, NONE, Rows, Stnu, TooLarge, add, within_limit};
 
 /// One step along an edge of a cycle; the numbers are indices into [`Stnu::edges`] and [`Stnu::links`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -238,7 +238,14 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// Does the backward search of every link, those it needs first. A cycle if the network is not controllable.
+    ///
+    /// What holds all the time: the potentials fit every ordinary, lower-case and derived edge (so the reduced lengths
+    /// Dijkstra's algorithm works on are not negative), and a link that is done has derived all the edges to its
+    /// activation that follow from it. That is why a search that comes upon an activation waits for the links that start
+    /// there: it must go on by their edges too.
     fn run(&mut self) -> Result<Option<Vec<Move>>, TooLarge> {
+        self.stnu.horizon()?;
         if let Some(cycle) = self.initial_potential()? {
             return Ok(Some(cycle));
         }
@@ -259,6 +266,9 @@ impl<'a> Search<'a> {
                         self.undone[self.stnu.links[link as usize].activation as usize] -= 1;
                         progress.pop();
                     }
+                    // Each link in progress needs the next, and the last one needs this one: a circle of ways from an
+                    // activation to a contingent event that is less than the width `y - x` away, then back to the
+                    // activation of that by its upper-case edge of weight `-y`. Each piece is less than `-x <= 0`.
                     Found::DoFirst(next) if self.state[next as usize] == State::InProgress => {
                         return Ok(Some(self.close_cycle(&progress, next)));
                     }
@@ -289,7 +299,15 @@ impl<'a> Search<'a> {
         (link != NONE).then(|| self.lower_from as u32 + link)
     }
 
-    /// The backward search from the contingent event of one link.
+    /// The backward search from the contingent event C of one link (A, x, y, C).
+    ///
+    /// A node X at a distance d from C (`C - X <= d`) has to come at `A + y - d` at the earliest as long as C has not
+    /// happened: Nature may still take the most (the upper-case rule). If `d < y - x`, C may happen before that and set X
+    /// free: X has to wait for C, and whatever is close to X has too, so the search goes on. If `d >= y - x`, that moment
+    /// comes before C can: an edge from X to A like any other (the rule that removes labels), and the search ends there,
+    /// because what leads to X leads on to A by that edge.
+    ///
+    /// C itself met again on the way is a cycle to be looked into when all distances are known: `loops_back`.
     fn propagate(&mut self, link: u32) -> Result<Found, TooLarge> {
         let here = self.stnu.links[link as usize];
         let width = here.upper - here.lower;
@@ -364,6 +382,12 @@ impl<'a> Search<'a> {
 
     /// C lies on a cycle shorter than the width of its link. If a node on the way round comes before C, then knowing
     /// C is needed before C happens: a negative cycle.
+    ///
+    /// The way on from C begins with the lower-case edge, which supposes that Nature takes the least. A path may begin
+    /// so only if it comes to a node before C (P. Morris, *A structural characterization of temporal dynamic
+    /// controllability*, 2006: a cycle is semi-reducible if each of its lower-case edges is followed by such a path);
+    /// later the truth is known. So the search forward from C ends at the first node at a negative distance, among the
+    /// nodes the backward search went on from: those are the ones that are close enough to wait for C.
     fn negative_from_contingent(&mut self, link: u32) -> Result<Option<Vec<Move>>, TooLarge> {
         let source = self.stnu.links[link as usize].contingent;
         let base = self.node(source).potential;
@@ -429,7 +453,7 @@ impl<'a> Search<'a> {
         for at in 0..self.reached.len() {
             let node = self.reached[at];
             let Node { distance, expanded, ending, potential, .. } = *self.node(node);
-            let weight = add(distance, -here.upper)?;
+            let weight = distance - here.upper;
             if expanded == self.round {
                 if self.purpose == Purpose::Solve && node != here.contingent && ending == NONE {
                     self.waits.push(Wait { waiter: node, link, weight });
@@ -444,6 +468,10 @@ impl<'a> Search<'a> {
                 }
                 continue;
             }
+            if weight > LIMIT {
+                // Beyond the horizon: it says nothing.
+                continue;
+            }
             if self.purpose == Purpose::Explain {
                 let mut derivation = self.way_to_contingent(node, link);
                 derivation.push(Move::Upper(link));
@@ -453,7 +481,7 @@ impl<'a> Search<'a> {
             self.edges.push(Edge { from: node, to: activation, weight });
             self.before_in.push(std::mem::replace(&mut self.derived_in[activation as usize], edge));
             self.before_out.push(std::mem::replace(&mut self.derived_out[node as usize], edge));
-            if add(weight, self.node(activation).potential)? < potential {
+            if weight + self.node(activation).potential < potential {
                 self.improved.push((node, edge));
             }
         }

@@ -15,7 +15,7 @@ use std::collections::VecDeque;
 
 use crate::controllability::{Solution, Wait, solve};
 use crate::hierarchy::{Hierarchy, Path};
-use crate::stnu::{Edge, Link, Rows, Stnu, TooLarge, within_limit};
+use crate::stnu::{Edge, Link, Rows, Stnu, TooLarge};
 use implied::implied_by_links;
 pub(crate) use rigid::Rigid;
 
@@ -47,13 +47,19 @@ impl Dispatchable {
 }
 
 /// Makes a network dispatchable; `None` if it is not controllable. No edge is needless.
+///
+/// Only the check can find the numbers too large: what follows from a controllable network stays within its horizon or
+/// says nothing (`Stnu::horizon`).
+///
+/// # Errors
+/// [`TooLarge`] if the durations add up to more than 64-bit microseconds can hold.
 pub fn dispatchable(stnu: &Stnu) -> Result<Option<Dispatchable>, TooLarge> {
     let Some(Consequences { mut edges, waits, potential }) = consequences(stnu)? else { return Ok(None) };
     let rigid = Rigid::new(stnu, &edges, &potential);
     // What Nature keeps by herself helps to make other edges needless, and is needless itself.
-    let nature = rigid.contracted(&nature_keeps(stnu))?;
+    let nature = rigid.contracted(&nature_keeps(stnu));
     edges.extend(nature_keeps(stnu));
-    let mut kept = undominated(&rigid.contracted(&edges)?, &potential)?;
+    let mut kept = undominated(&rigid.contracted(&edges), &potential);
     kept.retain(|edge| {
         nature.binary_search_by_key(&(edge.from, edge.to), |known| (known.from, known.to)).is_err()
     });
@@ -82,9 +88,9 @@ pub(crate) struct Consequences {
 /// What follows from a network; `None` if it is not controllable.
 pub(crate) fn consequences(stnu: &Stnu) -> Result<Option<Consequences>, TooLarge> {
     let Some(Solution { derived, waits, potential }) = solve(stnu)? else { return Ok(None) };
-    let potential = fit(&when_nature_takes_the_least(stnu, &derived), potential)?;
+    let potential = fit(&when_nature_takes_the_least(stnu, &derived), potential);
     let mut edges = stnu.edges.clone();
-    edges.extend(implied_by_links(stnu, derived, &potential)?);
+    edges.extend(implied_by_links(stnu, derived, &potential));
     Ok(Some(Consequences { edges, waits, potential }))
 }
 
@@ -111,13 +117,13 @@ fn nature_keeps(stnu: &Stnu) -> Vec<Edge> {
 }
 
 /// Lowers potentials until they fit all edges: Bellman-Ford from what is almost right. There must be no negative cycle.
-fn fit(edges: &[Edge], mut potential: Vec<i64>) -> Result<Vec<i64>, TooLarge> {
+fn fit(edges: &[Edge], mut potential: Vec<i64>) -> Vec<i64> {
     let incoming = Rows::new(potential.len() as u32, edges.iter().map(|edge| edge.to));
     let mut open: VecDeque<u32> = (0..potential.len() as u32).collect();
     let mut queued = vec![true; potential.len()];
     while let Some(node) = open.pop_front() {
         queued[node as usize] = false;
-        let here = within_limit(potential[node as usize])?;
+        let here = potential[node as usize];
         for &edge in incoming.of(node) {
             let Edge { from, weight, .. } = edges[edge as usize];
             if weight + here < potential[from as usize] {
@@ -128,14 +134,14 @@ fn fit(edges: &[Edge], mut potential: Vec<i64>) -> Result<Vec<i64>, TooLarge> {
             }
         }
     }
-    Ok(potential)
+    potential
 }
 
 /// Of all shortest paths those that no other makes needless. There must be no cycle of weight 0.
 ///
 /// From a source u, a node v at a distance d(v) >= 0 is needless if a shortest path to it passes a node w with
 /// d(w) <= d(v); one at a distance < 0 if a shortest path to it passes a node w with d(w) < 0.
-fn undominated(edges: &[Edge], potential: &[i64]) -> Result<Vec<Edge>, TooLarge> {
+fn undominated(edges: &[Edge], potential: &[i64]) -> Vec<Edge> {
     let hierarchy = Hierarchy::new(edges, potential);
     let mut kept = Vec::new();
     hierarchy.all_paths(|from, to, Path { distance, least }| {
@@ -143,6 +149,6 @@ fn undominated(edges: &[Edge], potential: &[i64]) -> Result<Vec<Edge>, TooLarge>
         if !needless {
             kept.push(Edge { from, to, weight: distance });
         }
-    })?;
-    Ok(kept)
+    });
+    kept
 }

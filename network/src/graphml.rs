@@ -180,9 +180,9 @@ impl Reader<'_> {
         };
         let mut said: BTreeMap<(EventId, EventId), Range<usize>> = BTreeMap::new();
         for (requirement, [upper, lower]) in joined.requirements.iter().zip(&joined.places) {
-            for (ends, _) in exact::edges_of(requirement) {
-                let place = if ends == (requirement.from, requirement.to) { upper } else { lower };
-                said.entry(ends).or_insert_with(|| place.clone());
+            for (edge, place) in requirement.edges().into_iter().zip([upper, lower]) {
+                let Some((from, to, _)) = edge else { continue };
+                said.entry((from, to)).or_insert_with(|| place.clone());
             }
         }
         let place = |from, to| said.get(&(from, to)).or_else(|| said.get(&(to, from))).cloned();
@@ -347,7 +347,6 @@ impl Reader<'_> {
         second: &Edge<'_>,
         id_of: &BTreeMap<EventId, &str>,
     ) -> Option<ContingentLink> {
-        let negative = |duration: Duration| Duration::from_micros(-duration.as_micros());
         let link = |forward: &Edge<'_>, lower, upper| ContingentLink {
             from: forward.from,
             to: forward.to,
@@ -373,9 +372,9 @@ impl Reader<'_> {
                 };
                 let zero = Duration::ZERO;
                 if a > zero && b <= zero {
-                    Some(link(first, negative(b), a))
+                    Some(link(first, -b, a))
                 } else if b > zero && a <= zero {
-                    Some(link(second, negative(a), b))
+                    Some(link(second, -a, b))
                 } else {
                     let message = format!(
                         "{} and {}: their values {a} and {b} do not say which end is contingent; one must be the \
@@ -403,7 +402,7 @@ impl Reader<'_> {
                     self.problem(first.element.offset, message);
                     return None;
                 }
-                Some(link(forward, lower.value, negative(upper.value)))
+                Some(link(forward, lower.value, -upper.value))
             }
             (one, _) => {
                 let edge = if one.is_none() { first } else { second };

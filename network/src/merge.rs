@@ -5,6 +5,8 @@
 //! impossible. An event that is fixed by someone else (the origin, a contingent event) is never merged with another
 //! such event: that requirement stays, and the controllability check says what is wrong with it.
 
+use petgraph::unionfind::UnionFind;
+
 use crate::conflict::{Conflict, Part, Share};
 use crate::model::{ContingentLink, Event, EventId, ModelError, Network, Requirement};
 use crate::time::{Bound, Duration};
@@ -189,43 +191,34 @@ fn root_forest(tree: &[Vec<Join>]) -> Vec<Option<Join>> {
     parents
 }
 
-/// Union-find in which a class holds at most one event that is not ours to place.
+/// Classes of events, each with at most one that is not ours to place.
 struct Classes {
-    parent: Vec<u32>,
-    size: Vec<u32>,
+    sets: UnionFind<u32>,
     /// The event of each class (by its root) that is the origin or contingent.
     given: Vec<Option<EventId>>,
 }
 
 impl Classes {
     fn new(network: &Network) -> Classes {
-        let count = network.events().len();
         let given = network
             .event_ids()
             .map(|event| (event == network.origin() || network.link_of(event).is_some()).then_some(event))
             .collect();
-        Classes { parent: (0..count as u32).collect(), size: vec![1; count], given }
+        Classes { sets: UnionFind::new(network.events().len()), given }
     }
 
     fn root(&mut self, event: EventId) -> EventId {
-        let mut at = event.index();
-        while self.parent[at] as usize != at {
-            self.parent[at] = self.parent[self.parent[at] as usize];
-            at = self.parent[at] as usize;
-        }
-        EventId(at as u32)
+        EventId(self.sets.find_mut(event.0))
     }
 
     /// Joins two classes; false if they are one already or would hold two events that are not ours to place.
     fn join(&mut self, a: EventId, b: EventId) -> bool {
-        let (a, b) = (self.root(a).index(), self.root(b).index());
-        if a == b || (self.given[a].is_some() && self.given[b].is_some()) {
+        let given = [self.root(a), self.root(b)].map(|root| self.given[root.index()]);
+        if matches!(given, [Some(_), Some(_)]) || !self.sets.union(a.0, b.0) {
             return false;
         }
-        let (large, small) = if self.size[a] >= self.size[b] { (a, b) } else { (b, a) };
-        self.parent[small] = large as u32;
-        self.size[large] += self.size[small];
-        self.given[large] = self.given[large].or(self.given[small]);
+        let root = self.root(a);
+        self.given[root.index()] = given[0].or(given[1]);
         true
     }
 

@@ -55,6 +55,16 @@ pub struct Requirement {
     pub upper: Bound,
 }
 
+impl Requirement {
+    /// What it says as edges `(a, b, weight)` of a distance graph, `b - a <= weight`: that of the upper bound, then that of
+    /// the lower one; `None` for a bound that is infinite.
+    pub fn edges(&self) -> [Option<(EventId, EventId, Duration)>; 2] {
+        let upper = self.upper.finite().map(|upper| (self.from, self.to, upper));
+        let lower = self.lower.finite().map(|lower| (self.to, self.from, -lower));
+        [upper, lower]
+    }
+}
+
 /// Nature picks `to - from` in `[lower, upper]`, `0 <= lower <= upper`, and lets it be known after a delay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ContingentLink {

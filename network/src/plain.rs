@@ -60,7 +60,7 @@ pub(crate) struct Intervals {
 impl Intervals {
     /// Adds `to - from <= weight`, said at `place`.
     pub(crate) fn add(&mut self, from: EventId, to: EventId, weight: Duration, place: Range<usize>) {
-        let lower = Duration::from_micros(-weight.as_micros());
+        let lower = -weight;
         if let Some(open) = self.open.get_mut(&(to, from))
             && let Some(&first) = open.front()
             && self.requirements[first].upper.finite().is_some_and(|upper| lower <= upper)

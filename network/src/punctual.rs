@@ -5,6 +5,8 @@
 
 use std::collections::BTreeMap;
 
+use petgraph::unionfind::UnionFind;
+
 use crate::conflict::{Part, Share};
 use crate::controllability::{negative_cycle, solve};
 use crate::dispatchable::Rigid;
@@ -67,7 +69,7 @@ pub fn punctual(network: &Network) -> Result<Option<Punctuality>, TooLarge> {
         by_leader.entry(rigid.leader[node as usize]).or_default().push(node);
     }
     by_leader.retain(|_, nodes| nodes.len() > 1);
-    let mut written = Written::new(&merged.network, &reduction);
+    let mut written = written(&merged.network, &reduction);
     let ending = stnu.link_ending_at();
     let is_ours = |node: u32| node != 0 && ending[node as usize] == NONE;
     let mut originals: Vec<Vec<EventId>> = vec![Vec::new(); merged.network.events().len()];
@@ -83,7 +85,7 @@ pub fn punctual(network: &Network) -> Result<Option<Punctuality>, TooLarge> {
         let mut others = Vec::new();
         for &node in nodes.iter().filter(|&&node| node != leader) {
             // What is at a written distance from what was said already goes without saying.
-            if written.join(leader, node) && is_ours(node) {
+            if written.union(leader, node) && is_ours(node) {
                 let after = Duration::from_micros(rigid.offset[node as usize]);
                 others.push(Exact { events: events_at(node), after, node });
             }
@@ -147,38 +149,14 @@ impl Punctuality {
     }
 }
 
-/// Union-find over the nodes: which are at a distance that a single constraint says.
-struct Written {
-    parent: Vec<u32>,
-}
-
-impl Written {
-    fn new(merged: &Network, reduction: &Reduction) -> Written {
-        let mut written = Written { parent: (0..reduction.stnu.nodes).collect() };
-        for requirement in merged.requirements() {
-            if requirement.lower.finite().is_some()
-                && requirement.lower.finite() == requirement.upper.finite()
-            {
-                let node = |event: EventId| reduction.places[event.index()].node;
-                written.join(node(requirement.from), node(requirement.to));
-            }
+/// Classes of nodes at distances that a single constraint says.
+fn written(merged: &Network, reduction: &Reduction) -> UnionFind<u32> {
+    let mut written = UnionFind::new(reduction.stnu.nodes as usize);
+    let node = |event: EventId| reduction.places[event.index()].node;
+    for requirement in merged.requirements() {
+        if requirement.lower.finite().is_some() && requirement.lower == requirement.upper {
+            written.union(node(requirement.from), node(requirement.to));
         }
-        written
     }
-
-    fn root(&mut self, mut node: u32) -> u32 {
-        while self.parent[node as usize] != node {
-            let above = self.parent[self.parent[node as usize] as usize];
-            self.parent[node as usize] = above;
-            node = above;
-        }
-        node
-    }
-
-    /// Joins two classes; false if they are one already.
-    fn join(&mut self, a: u32, b: u32) -> bool {
-        let (a, b) = (self.root(a), self.root(b));
-        self.parent[b as usize] = a;
-        a != b
-    }
+    written
 }

@@ -14,8 +14,6 @@
 //! unless the parent's news is delayed. A requirement within one tree of links is decided here: only Nature has a say.
 //! A child at a fixed distance from its parent is the same uncertainty, heard by whichever news says more.
 
-use crate::blame::natures_conflict;
-use crate::conflict::Conflict;
 use crate::model::{ContingentLink, Delay, Event, EventId, Name, Network, Requirement};
 use crate::stnu::{Edge, Link, Stnu, TooLarge, add};
 use crate::time::{Bound, Duration, Time};
@@ -63,10 +61,19 @@ pub(crate) enum Source {
 /// Why there is no plain STNU.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ReduceError {
-    /// Nature alone can violate these constraints: not controllable.
-    Never(Conflict),
+    /// Nature alone can violate a requirement: not controllable.
+    Never(Violation),
     /// The numbers are too large to compute with.
     TooLarge,
+}
+
+/// A side of a requirement that no strategy keeps: both its events are in one tree of links, and Nature may let `to`
+/// come too long after `from`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Violation {
+    pub(crate) source: Source,
+    pub(crate) from: EventId,
+    pub(crate) to: EventId,
 }
 
 impl From<TooLarge> for ReduceError {
@@ -333,15 +340,14 @@ impl<'a> Reducer<'a> {
             sources.push(Source::AfterOrigin);
         }
         for (index, requirement) in self.network.requirements().iter().enumerate() {
-            let upper = requirement.upper.finite().map(|w| (requirement.from, requirement.to, w.as_micros()));
-            let lower =
-                requirement.lower.finite().map(|w| (requirement.to, requirement.from, -w.as_micros()));
-            for (source, side) in [(Source::Upper(index), upper), (Source::Lower(index), lower)] {
-                let Some((from, to, weight)) = side else { continue };
+            for (source, edge) in
+                [Source::Upper(index), Source::Lower(index)].into_iter().zip(requirement.edges())
+            {
+                let Some((from, to, weight)) = edge else { continue };
+                let weight = weight.as_micros();
                 if let Some(worst) = self.trees.nature_alone(self.network, from, to)? {
                     if worst > weight && self.progress.is_none() {
-                        let conflict = natures_conflict(self.network, &self.trees, source, from, to);
-                        return Err(ReduceError::Never(conflict));
+                        return Err(ReduceError::Never(Violation { source, from, to }));
                     }
                     continue;
                 }

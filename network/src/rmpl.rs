@@ -129,7 +129,7 @@ impl Writer<'_> {
             (Bound::Infinite, Bound::Infinite) => return,
             // A `between` always has a lower bound: the other way round this one is one.
             (Bound::Infinite, Bound::Finite(upper)) => {
-                let lower = Duration::from_micros(-upper.as_micros());
+                let lower = -upper;
                 (address(to), address(from), format!(":lower-bound {lower}"))
             }
             (Bound::Finite(lower), Bound::Infinite) => {

@@ -84,6 +84,30 @@ impl Stnu {
         }
         ending
     }
+
+    /// By when all is over, whatever Nature does, if every node is executed as early as it may be.
+    ///
+    /// The time of a node is that of another and the wait for it: the shortest distance an edge demands, or a duration of
+    /// Nature's. Going back from the last node in this way passes every node at most once, so the longest waits of all
+    /// nodes and the longest durations of all links add up to a time that is enough. What follows from a controllable
+    /// network is no longer than that either, and what happens later than that never happens: a bound beyond it says
+    /// nothing.
+    ///
+    /// # Errors
+    /// [`TooLarge`] if that is beyond [`LIMIT`]. Everything that decides or compiles a network asks this first, so all
+    /// refuse the same networks.
+    pub(crate) fn horizon(&self) -> Result<i64, TooLarge> {
+        let mut longest_wait = vec![0; self.nodes as usize];
+        for edge in &self.edges {
+            let wait: &mut i64 = &mut longest_wait[edge.from as usize];
+            *wait = (*wait).max(-within_limit(edge.weight)?);
+        }
+        let longest_durations = self.links.iter().map(|link| link.upper);
+        longest_wait
+            .into_iter()
+            .chain(longest_durations)
+            .try_fold(0, |sum, wait| add(sum, within_limit(wait)?))
+    }
 }
 
 /// Adjacency in compressed rows: the items of node `v` are `items[start[v]..start[v + 1]]`.

@@ -1,10 +1,20 @@
-//! Dates and differences of dates: 64-bit integer microseconds, seconds at the edges.
+//! Dates, differences of dates and intervals: 64-bit integer microseconds, seconds at the edges.
 //!
-//! `Time` is a date (microseconds after the origin), `Duration` a signed difference of two dates. Infinity is a
-//! variant of [`Bound`], never a number, so it cannot be added to anything by mistake. Whatever enters the model is
-//! at most [`Duration::MAX`]; the sums the algorithms form are checked against overflow (see `graph.rs`).
+//! [`Time`] is a date (microseconds after the origin), [`Duration`] a signed difference of two dates, [`Interval`] all
+//! dates from one to another. Infinity is a variant of [`Bound`], never a number, so it cannot be added to anything by
+//! mistake. In JSON all are seconds in decimal with all their digits, read exactly or refused.
+//!
+//! Whatever enters the model is at most [`Duration::MAX`]. There are two ways to calculate with it, both without
+//! overflow: `checked_*` where a result that cannot be represented is an error to tell, and `saturating_*` where it is a
+//! bound on what can be known: beyond the ends of time (300,000 years) the end of time says as little. The searches
+//! have integers of their own, checked in theirs (see `stnu.rs`).
 
 use std::fmt;
+use std::ops::Neg;
+
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_json::value::RawValue;
 
 const MICROS_PER_SECOND: i64 = 1_000_000;
 
@@ -15,6 +25,16 @@ pub struct Time(i64);
 /// A signed difference of two dates, in microseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Duration(i64);
+
+/// The dates from `earliest` to `latest`, both included; none if `earliest` is after `latest`. In JSON a list of the two.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(from = "(Time, Time)", into = "(Time, Time)")]
+pub struct Interval {
+    /// The first date.
+    pub earliest: Time,
+    /// The last date.
+    pub latest: Time,
+}
 
 /// One side of an interval of durations: a number, or no bound on that side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -29,6 +49,12 @@ impl Time {
     /// The moment the origin is executed.
     pub const ZERO: Time = Time(0);
 
+    /// The first date there is. As a lower bound it says nothing.
+    pub const MIN: Time = Time(i64::MIN);
+
+    /// The last date there is. As an upper bound it says nothing.
+    pub const MAX: Time = Time(i64::MAX);
+
     /// The date `micros` microseconds after the origin.
     pub const fn from_micros(micros: i64) -> Time {
         Time(micros)
@@ -39,14 +65,46 @@ impl Time {
         self.0
     }
 
+    /// The date so long after the origin.
+    pub const fn after_origin(duration: Duration) -> Time {
+        Time(duration.0)
+    }
+
+    /// How long after the origin this is.
+    pub const fn since_origin(self) -> Duration {
+        Duration(self.0)
+    }
+
     /// The date `duration` later, `None` if it cannot be represented.
     pub fn checked_add(self, duration: Duration) -> Option<Time> {
         self.0.checked_add(duration.0).map(Time)
     }
 
+    /// The date `duration` earlier, `None` if it cannot be represented.
+    pub fn checked_sub(self, duration: Duration) -> Option<Time> {
+        self.0.checked_sub(duration.0).map(Time)
+    }
+
     /// How long after `earlier` this date is (negative if it is before), `None` if that cannot be represented.
     pub fn checked_since(self, earlier: Time) -> Option<Duration> {
         self.0.checked_sub(earlier.0).map(Duration)
+    }
+
+    /// The date `duration` later, or the end of time it would be beyond.
+    #[must_use]
+    pub const fn saturating_add(self, duration: Duration) -> Time {
+        Time(self.0.saturating_add(duration.0))
+    }
+
+    /// The date `duration` earlier, or the end of time it would be beyond.
+    #[must_use]
+    pub const fn saturating_sub(self, duration: Duration) -> Time {
+        Time(self.0.saturating_sub(duration.0))
+    }
+
+    /// How long after `earlier` this date is (negative if it is before), or the longest duration there is.
+    pub const fn saturating_since(self, earlier: Time) -> Duration {
+        Duration(self.0.saturating_sub(earlier.0))
     }
 }
 
@@ -56,6 +114,9 @@ impl Duration {
 
     /// The largest duration a model may contain: 10 billion seconds, some 317 years.
     pub const MAX: Duration = Duration(10_000_000_000 * MICROS_PER_SECOND);
+
+    /// The shortest that can be told from none: a microsecond.
+    pub const SHORTEST: Duration = Duration(1);
 
     /// A duration of `micros` microseconds.
     pub const fn from_micros(micros: i64) -> Duration {
@@ -80,6 +141,30 @@ impl Duration {
     /// The difference, `None` if it cannot be represented.
     pub fn checked_sub(self, other: Duration) -> Option<Duration> {
         self.0.checked_sub(other.0).map(Duration)
+    }
+
+    /// The sum, or the longest duration of its sign there is.
+    #[must_use]
+    pub const fn saturating_add(self, other: Duration) -> Duration {
+        Duration(self.0.saturating_add(other.0))
+    }
+
+    /// The difference, or the longest duration of its sign there is.
+    #[must_use]
+    pub const fn saturating_sub(self, other: Duration) -> Duration {
+        Duration(self.0.saturating_sub(other.0))
+    }
+
+    /// So many times the duration, or the longest duration of its sign there is.
+    #[must_use]
+    pub const fn saturating_mul(self, times: i64) -> Duration {
+        Duration(self.0.saturating_mul(times))
+    }
+
+    /// The duration without its sign.
+    #[must_use]
+    pub const fn abs(self) -> Duration {
+        Duration(self.0.saturating_abs())
     }
 
     /// Reads seconds written in decimal (`15`, `-1.5`, `.5`, `1e3`), exact to a microsecond.
@@ -133,6 +218,70 @@ impl Bound {
             Bound::Finite(duration) => Some(duration),
             Bound::Infinite => None,
         }
+    }
+}
+
+impl Interval {
+    /// All there is.
+    pub const ANYTIME: Interval = Interval { earliest: Time::MIN, latest: Time::MAX };
+
+    /// From a date to a date.
+    pub const fn new(earliest: Time, latest: Time) -> Interval {
+        Interval { earliest, latest }
+    }
+
+    /// One date alone.
+    pub const fn at(time: Time) -> Interval {
+        Interval { earliest: time, latest: time }
+    }
+
+    /// True if there is no date in it.
+    pub fn is_empty(self) -> bool {
+        self.earliest > self.latest
+    }
+
+    /// True if the date is in it.
+    pub fn contains(self, time: Time) -> bool {
+        self.earliest <= time && time <= self.latest
+    }
+
+    /// The dates that are in both.
+    #[must_use]
+    pub fn and(self, other: Interval) -> Interval {
+        Interval { earliest: self.earliest.max(other.earliest), latest: self.latest.min(other.latest) }
+    }
+
+    /// Where something is that comes `least` to `most` after what is in here.
+    #[must_use]
+    pub const fn later(self, least: Duration, most: Duration) -> Interval {
+        Interval { earliest: self.earliest.saturating_add(least), latest: self.latest.saturating_add(most) }
+    }
+
+    /// Where something is that comes `least` to `most` before what is in here.
+    #[must_use]
+    pub const fn earlier(self, least: Duration, most: Duration) -> Interval {
+        Interval { earliest: self.earliest.saturating_sub(most), latest: self.latest.saturating_sub(least) }
+    }
+}
+
+impl From<(Time, Time)> for Interval {
+    fn from((earliest, latest): (Time, Time)) -> Interval {
+        Interval { earliest, latest }
+    }
+}
+
+impl From<Interval> for (Time, Time) {
+    fn from(interval: Interval) -> (Time, Time) {
+        (interval.earliest, interval.latest)
+    }
+}
+
+impl Neg for Duration {
+    type Output = Duration;
+
+    /// The same in the other direction. Nothing that is read or counted is so long that it has no opposite.
+    fn neg(self) -> Duration {
+        Duration(self.0.saturating_neg())
     }
 }
 
@@ -191,9 +340,80 @@ impl fmt::Display for Duration {
     }
 }
 
+impl Serialize for Duration {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let number = RawValue::from_string(self.to_string())
+            .unwrap_or_else(|error| unreachable!("seconds are a JSON number: {error}"));
+        number.serialize(serializer)
+    }
+}
+
+/// Only from the text of a document: what was a binary number before is not what stands there.
+impl<'de> Deserialize<'de> for Duration {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Duration, D::Error> {
+        let text = <&RawValue>::deserialize(deserializer)?.get();
+        Duration::parse_seconds(text).map_err(|error| D::Error::custom(format!("`{text}`: {error}")))
+    }
+}
+
+impl Serialize for Time {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.since_origin().serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Time {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Time, D::Error> {
+        Duration::deserialize(deserializer).map(Time::after_origin)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn json_has_all_digits_and_takes_them_back() {
+        let interval = Interval::new(Time::from_micros(-1_500_000), Time::from_micros(22_000_001));
+        let text = serde_json::to_string(&interval).unwrap();
+        assert_eq!(text, "[-1.5,22.000001]");
+        assert_eq!(serde_json::from_str::<Interval>(&text).unwrap(), interval);
+        for (text, why) in [
+            ("1.0000001", "`1.0000001`: this has digits below a microsecond (kirk never rounds a bound)"),
+            ("\"1\"", "`\"1\"`: this is not a number of seconds"),
+            ("1e11", "`1e11`: this is more than 10 billion seconds"),
+        ] {
+            assert!(serde_json::from_str::<Time>(text).unwrap_err().to_string().starts_with(why), "{text}");
+        }
+    }
+
+    #[test]
+    fn beyond_the_ends_of_time_is_the_end_of_time() {
+        let long = Duration::from_micros(i64::MAX);
+        assert_eq!(Time::from_micros(1).checked_add(long), None);
+        assert_eq!(Time::from_micros(1).saturating_add(long), Time::MAX);
+        assert_eq!(Time::from_micros(-2).checked_sub(long), None);
+        assert_eq!(Time::from_micros(-2).saturating_sub(long), Time::MIN);
+        assert_eq!(Time::MAX.saturating_since(Time::MIN), long);
+        assert_eq!(-Duration::from_micros(i64::MIN), long);
+        let always = Interval::ANYTIME.later(Duration::from_secs(1), long);
+        assert_eq!(always.latest, Time::MAX);
+        assert_eq!(Interval::ANYTIME.earlier(Duration::ZERO, long).earliest, Time::MIN);
+    }
+
+    #[test]
+    fn what_is_in_two_intervals_is_in_both() {
+        let interval =
+            |earliest, latest| Interval::new(Time::from_micros(earliest), Time::from_micros(latest));
+        for (a, b, c, d) in (0..256).map(|n| (n & 3, n >> 2 & 3, n >> 4 & 3, n >> 6)) {
+            let (first, second) = (interval(a, b), interval(c, d));
+            let both = first.and(second);
+            for time in (0..4).map(Time::from_micros) {
+                assert_eq!(both.contains(time), first.contains(time) && second.contains(time));
+            }
+            assert_eq!(both.is_empty(), !(0..4).any(|time| both.contains(Time::from_micros(time))));
+        }
+    }
 
     #[test]
     fn seconds_are_read_exactly_or_refused() {

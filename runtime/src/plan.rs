@@ -34,9 +34,10 @@ impl Plan {
     /// Merges, reduces, proves and compiles a network.
     pub fn new(network: &Network) -> Result<Plan, NoPlan> {
         let merged = merge(network).network;
-        match compile(reduce(&merged))? {
-            Some((reduction, net)) => Ok(Plan { network: Arc::new(merged), reduction, net }),
-            None => match check(network)? {
+        match compile(reduce(&merged)) {
+            Ok(Some((reduction, net))) => Ok(Plan { network: Arc::new(merged), reduction, net }),
+            // The check has the last word on both, so that a plan is refused exactly where it says so.
+            Ok(None) | Err(TooLarge) => match check(network)? {
                 Verdict::Uncontrollable(conflict) => Err(NoPlan::Uncontrollable(conflict)),
                 Verdict::Controllable => unreachable!("a controllable network has a dispatchable form"),
             },

@@ -42,10 +42,10 @@ pub(super) fn elongate(network: &Network) -> Result<Elongated, TooLarge> {
     let mut requirements = Vec::new();
     let mut sides = Vec::new();
     for (index, requirement) in network.requirements().iter().enumerate() {
-        let upper = requirement.upper.finite().map(|w| (requirement.from, requirement.to, w.as_micros()));
-        let lower = requirement.lower.finite().map(|w| (requirement.to, requirement.from, -w.as_micros()));
-        for (part, side) in [(Part::RequirementUpper(index), upper), (Part::RequirementLower(index), lower)] {
-            let Some((from, to, weight)) = side else { continue };
+        let parts = [Part::RequirementUpper(index), Part::RequirementLower(index)];
+        for (part, edge) in parts.into_iter().zip(requirement.edges()) {
+            let Some((from, to, weight)) = edge else { continue };
+            let weight = weight.as_micros();
             let nature = trees.nature_alone(network, from, to)?;
             if nature.is_some_and(|worst| worst <= weight) {
                 continue;

@@ -1,49 +1,51 @@
 //! Potentials: numbers for the nodes that make every edge non-negative, so that Dijkstra's algorithm applies.
 
-use super::{EdgeId, Found, Incoming, Move, Node, Purpose, Search, incoming_of};
-use crate::stnu::{Edge, LIMIT, NONE, TooLarge, within_limit};
+use super::{EdgeId, Found, Incoming, Move, Search, incoming_of};
+use crate::stnu::{Edge, LIMIT, NONE, Rows, TooLarge, within_limit};
+
+/// Whether the edges into a node are to be looked at: not until it changes, in this round or the next, or in the order
+/// of this round.
+#[derive(Clone, Copy, PartialEq)]
+enum Scan {
+    NotDue,
+    Due,
+    Ordered,
+}
 
 impl Search<'_> {
     /// Potentials over ordinary and lower-case edges, or a negative cycle of them.
     ///
-    /// Bellman-Ford in rounds over the nodes that changed; now and then the tree of last improvements is searched for a
-    /// cycle, so a negative one is found about as soon as it exists.
+    /// Bellman-Ford in rounds over the nodes that changed, each round in the order of the events as far as it is known:
+    /// A. V. Goldberg, T. Radzik, *A heuristic improvement of the Bellman-Ford algorithm*, 1993. A sequence of any length,
+    /// whatever the order of its nodes, then takes two rounds; and never are there more than without the order. Now and
+    /// then the tree of last improvements is searched for a cycle, so a negative one is found about as soon as it exists.
     ///
     /// A contingent event comes at least its shortest duration after its activation. The searches need no such edge, but
     /// with it the potentials are in the order of the events across links too: links are then rarely begun anew, and
     /// potentials rarely repaired. It is left out where it would show, in an explanation or in the order of what is derived.
     pub(super) fn initial_potential(&mut self) -> Result<Option<Vec<Move>>, TooLarge> {
-        let mut changed: Vec<u32> = (0..self.stnu.nodes).rev().collect();
-        let mut queued = vec![false; self.nodes.len()];
-        let mut next = Vec::new();
+        let special = Rows::new(self.stnu.nodes, self.edges[self.lower_from..].iter().map(|edge| edge.to));
+        let mut changed: Vec<u32> = (0..self.stnu.nodes).collect();
+        let mut state = vec![Scan::Due; self.nodes.len()];
         let (mut rounds, mut next_look) = (0, 1);
         while !changed.is_empty() {
-            for &to in &changed {
-                queued[to as usize] = false;
+            let order = self.in_order(&special, &changed, &mut state);
+            changed.clear();
+            for to in order {
+                state[to as usize] = Scan::NotDue;
                 let potential = within_limit(self.node(to).potential)?;
-                let mut relax = |from: u32, edge: EdgeId, weight: i64, node: &mut Node| {
+                for at in 0..self.arcs_into(&special, to) {
+                    let Incoming { from, edge, weight } = self.arc_into(&special, to, at);
+                    let node = &mut self.nodes[from as usize];
                     let candidate = weight + potential;
                     if candidate < node.potential {
                         node.potential = candidate;
                         node.via = edge;
-                        if !std::mem::replace(&mut queued[from as usize], true) {
-                            next.push(from);
+                        if state[from as usize] == Scan::NotDue {
+                            state[from as usize] = Scan::Due;
+                            changed.push(from);
                         }
                     }
-                };
-                if let Some(lower) = self.lower_into(to) {
-                    let Edge { from, weight, .. } = self.edges[lower as usize];
-                    relax(from, lower, weight, &mut self.nodes[from as usize]);
-                }
-                if self.purpose == Purpose::Decide {
-                    for &link in self.starting.of(to) {
-                        let edge = (self.lower_from + self.stnu.links.len()) as u32 + link;
-                        let Edge { from, weight, .. } = self.edges[edge as usize];
-                        relax(from, edge, weight, &mut self.nodes[from as usize]);
-                    }
-                }
-                for &Incoming { from, edge, weight } in &self.incoming[incoming_of(&self.incoming_at, to)] {
-                    relax(from, edge, weight, &mut self.nodes[from as usize]);
                 }
             }
             rounds += 1;
@@ -53,10 +55,60 @@ impl Search<'_> {
                     return Ok(Some(cycle));
                 }
             }
-            changed.clear();
-            std::mem::swap(&mut changed, &mut next);
         }
         Ok(None)
+    }
+
+    /// The nodes that changed, and those they will or may change next, each before what it changes.
+    ///
+    /// That is a depth-first search along the edges that are tight or too short, which are those of the shortest paths
+    /// as known so far. A cycle of such edges is cut somewhere: that costs rounds, not correctness.
+    fn in_order(&self, special: &Rows, changed: &[u32], state: &mut [Scan]) -> Vec<u32> {
+        let mut order = Vec::with_capacity(changed.len());
+        // A node and how many of its edges have been followed.
+        let mut open: Vec<(u32, usize)> = Vec::new();
+        for &root in changed {
+            if state[root as usize] == Scan::Ordered {
+                continue;
+            }
+            state[root as usize] = Scan::Ordered;
+            open.push((root, 0));
+            while let Some((to, at)) = open.last_mut() {
+                if *at == self.arcs_into(special, *to) {
+                    order.push(*to);
+                    open.pop();
+                    continue;
+                }
+                let Incoming { from, weight, .. } = self.arc_into(special, *to, *at);
+                *at += 1;
+                let follow = weight + self.node(*to).potential <= self.node(from).potential;
+                if follow && state[from as usize] != Scan::Ordered {
+                    state[from as usize] = Scan::Ordered;
+                    open.push((from, 0));
+                }
+            }
+        }
+        order.reverse();
+        order
+    }
+
+    /// How many edges lead into a node: first the special ones (lower-case edges and those that links imply), then the
+    /// ordinary ones.
+    #[inline]
+    fn arcs_into(&self, special: &Rows, node: u32) -> usize {
+        special.of(node).len() + incoming_of(&self.incoming_at, node).len()
+    }
+
+    #[inline]
+    fn arc_into(&self, special: &Rows, node: u32, at: usize) -> Incoming {
+        match special.of(node).get(at) {
+            Some(&special) => {
+                let edge = self.lower_from as u32 + special;
+                let Edge { from, weight, .. } = self.edges[edge as usize];
+                Incoming { weight, from, edge }
+            }
+            None => self.incoming[self.incoming_at[node as usize] as usize + at - special.of(node).len()],
+        }
     }
 
     fn cycle_of_improvements(&self) -> Option<Vec<Move>> {

@@ -5,20 +5,16 @@
 
 use crate::hierarchy::{Hierarchy, LANES, Searches};
 use crate::radix::RadixQueue;
-use crate::stnu::{Edge, Link, Rows, Stnu, TooLarge, add, within_limit};
+use crate::stnu::{Edge, LIMIT, Link, Rows, Stnu};
 
 /// Edges to the activations, from `derived`, and edges from them. The potentials must fit everything, lower-case edges
 /// too.
-pub(super) fn implied_by_links(
-    stnu: &Stnu,
-    derived: Vec<Edge>,
-    potential: &[i64],
-) -> Result<Vec<Edge>, TooLarge> {
+pub(super) fn implied_by_links(stnu: &Stnu, derived: Vec<Edge>, potential: &[i64]) -> Vec<Edge> {
     let hierarchy = Hierarchy::new(&stnu.edges, potential);
     let mut searches = Searches::default();
     let mut implied = shortest(derived, &hierarchy, potential, &mut searches);
-    implied.extend(before_the_least(stnu, &implied, &hierarchy, potential, &mut searches)?);
-    Ok(implied)
+    implied.extend(before_the_least(stnu, &implied, &hierarchy, potential, &mut searches));
+    implied
 }
 
 /// Leaves out edges to which there is a shorter path that leads over known edges and ends with at most one of these.
@@ -60,7 +56,7 @@ fn before_the_least(
     known: &Hierarchy,
     potential: &[i64],
     searches: &mut Searches,
-) -> Result<Vec<Edge>, TooLarge> {
+) -> Vec<Edge> {
     let least = |link: &Link| Edge { from: link.activation, to: link.contingent, weight: link.lower };
     let all: Vec<Edge> =
         stnu.edges.iter().chain(derived).copied().chain(stnu.links.iter().map(least)).collect();
@@ -87,12 +83,16 @@ fn before_the_least(
                 if by_known < first + length {
                     continue;
                 }
-                let distance = within_limit(length - potential[node as usize] + base)?;
+                let distance = length - potential[node as usize] + base;
                 if distance < 0 {
                     if by_known > first + length {
-                        let weight = add(link.lower, distance)?;
+                        let weight = link.lower + distance;
                         found.push(Edge { from: link.activation, to: node, weight });
                     }
+                    continue;
+                }
+                if distance > LIMIT {
+                    // No way back: no distance is below -LIMIT.
                     continue;
                 }
                 for &(to, reduced) in outgoing.of(node) {
@@ -105,7 +105,7 @@ fn before_the_least(
             }
         }
     }
-    Ok(found)
+    found
 }
 
 /// Edges by source, in one piece, their weights reduced by the potentials: none is negative.

@@ -3,7 +3,7 @@
 use petgraph::algo::kosaraju_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
 
-use crate::stnu::{Edge, NONE, Stnu, TooLarge, add};
+use crate::stnu::{Edge, NONE, Stnu};
 
 /// Groups of nodes at fixed distances from one another, each with a leader: its earliest node.
 #[derive(Debug)]
@@ -49,18 +49,18 @@ impl Rigid {
     }
 
     /// The edges between leaders, sorted, the tightest of each pair.
-    pub(super) fn contracted(&self, edges: &[Edge]) -> Result<Vec<Edge>, TooLarge> {
+    pub(super) fn contracted(&self, edges: &[Edge]) -> Vec<Edge> {
         let mut contracted = Vec::with_capacity(edges.len());
         for edge in edges {
             let (from, to) = (self.leader[edge.from as usize], self.leader[edge.to as usize]);
             if from != to {
                 let shift = self.offset[edge.from as usize] - self.offset[edge.to as usize];
-                contracted.push(Edge { from, to, weight: add(edge.weight, shift)? });
+                contracted.push(Edge { from, to, weight: edge.weight + shift });
             }
         }
         contracted.sort_unstable_by_key(|edge| (edge.from, edge.to, edge.weight));
         contracted.dedup_by_key(|edge| (edge.from, edge.to));
-        Ok(contracted)
+        contracted
     }
 
     /// For each node its leader, if that comes at the same time.

@@ -57,19 +57,9 @@ pub(super) fn requirements(
 /// The tightest bound on `to - from` for each pair `(from, to)` that has one.
 pub(super) fn tightest(requirements: &[Requirement]) -> BTreeMap<(EventId, EventId), Duration> {
     let mut edges = BTreeMap::new();
-    for (ends, weight) in requirements.iter().flat_map(edges_of) {
-        let known = edges.entry(ends).or_insert(weight);
+    for (from, to, weight) in requirements.iter().flat_map(Requirement::edges).flatten() {
+        let known = edges.entry((from, to)).or_insert(weight);
         *known = weight.min(*known);
     }
     edges
-}
-
-/// The edges of a requirement: the one of its upper bound, then the one of its lower bound.
-pub(super) fn edges_of(
-    requirement: &Requirement,
-) -> impl Iterator<Item = ((EventId, EventId), Duration)> + use<> {
-    let Requirement { from, to, lower, upper } = *requirement;
-    let negative = |duration: Duration| Duration::from_micros(-duration.as_micros());
-    let upper = upper.finite().map(|upper| ((from, to), upper));
-    upper.into_iter().chain(lower.finite().map(|lower| ((to, from), negative(lower))))
 }

@@ -6,7 +6,7 @@ use std::fmt::{self, Write};
 use quick_xml::escape::escape;
 
 use super::exact;
-use crate::model::{Delay, EventId, Network};
+use crate::model::{Delay, EventId, Network, Requirement};
 use crate::plain::{Intervals, unquoted};
 use crate::time::Duration;
 
@@ -182,15 +182,14 @@ impl<'a> Writer<'a> {
             }));
         };
         // The links come first: each pair stands where its link does, whatever else is between its events.
-        let negative = |duration: Duration| Duration::from_micros(-duration.as_micros());
         for link in self.network.contingents() {
             let end = &self.ids[link.to.index()];
             let lower = format!("LC({end}):{}", link.lower);
-            let upper = format!("UC({end}):{}", negative(link.upper));
+            let upper = format!("UC({end}):{}", -link.upper);
             edge(link.from, link.to, &|edge| edge.label = Some(lower.clone()));
             edge(link.to, link.from, &|edge| edge.label = Some(upper.clone()));
         }
-        for ((from, to), weight) in self.network.requirements().iter().flat_map(exact::edges_of) {
+        for (from, to, weight) in self.network.requirements().iter().flat_map(Requirement::edges).flatten() {
             edge(from, to, &|edge| {
                 edge.weight = Some(edge.weight.map_or(weight, |known| known.min(weight)));
             });

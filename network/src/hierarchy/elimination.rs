@@ -8,6 +8,14 @@ use super::{FARTHEST, Hierarchy, NOTHING, Way, Ways};
 use crate::stnu::{Edge, NONE};
 
 /// Eliminates all nodes that have edges, always one of those that seem to leave the fewest edges behind.
+///
+/// What holds after every step: between the nodes that are left the shortest paths are as long as in the whole network,
+/// and pass inner nodes as early ([`Way::least`]), because a path through the node that went has an edge of its own now.
+/// So the ways of a node at its turn, to those left, are all that later searches need to know of it.
+///
+/// The cost is the product of the numbers of edges in and out, a bound on the fill-in (the Markowitz rule). It is not
+/// kept exact: new ways make a node dearer than the queue says, doubled and gone ones make it seem dearer than it is. A
+/// node whose turn it seems is tidied, and goes back into the queue if it then costs more than the next.
 pub(super) fn eliminate(edges: &[Edge], potential: &[i64]) -> Hierarchy {
     let count = potential.len();
     let mut left = Left::new(edges, potential);
@@ -20,7 +28,6 @@ pub(super) fn eliminate(edges: &[Edge], potential: &[i64]) -> Hierarchy {
     let mut nodes = Vec::with_capacity(queue.len());
     let mut rank = vec![NONE; count];
     let (mut up, mut down) = (Ways::with_capacity(2 * edges.len()), Ways::with_capacity(2 * edges.len()));
-    let mut incomplete = false;
     while let Some(Reverse((known, node))) = queue.pop() {
         if rank[node as usize] != NONE || known != cost[node as usize] {
             continue;
@@ -35,7 +42,7 @@ pub(super) fn eliminate(edges: &[Edge], potential: &[i64]) -> Hierarchy {
         rank[node as usize] = nodes.len() as u32;
         nodes.push(node);
         let (out, into) = left.take(node);
-        incomplete |= left.join_neighbours(&into, &out, potential[node as usize]);
+        left.join_neighbours(&into, &out, potential[node as usize]);
         for way in into.iter().chain(&out) {
             let neighbour = way.end;
             left.tidy_if_grown(neighbour);
@@ -53,7 +60,7 @@ pub(super) fn eliminate(edges: &[Edge], potential: &[i64]) -> Hierarchy {
     }
     thin(&mut up, &mut down);
     let potential = nodes.iter().map(|&node| potential[node as usize]).collect();
-    Hierarchy { nodes, rank, potential, up, down, incomplete }
+    Hierarchy { nodes, rank, potential, up, down }
 }
 
 /// What is not eliminated yet. Its lists are tidied now and then only: some ways are in there twice, or lead to nodes that
@@ -107,9 +114,8 @@ impl Left {
         (std::mem::take(&mut self.out[node as usize]), std::mem::take(&mut self.into[node as usize]))
     }
 
-    /// Puts edges in place of the paths through a node of this potential. True if one was too long.
-    fn join_neighbours(&mut self, into: &[Way], out: &[Way], potential: i64) -> bool {
-        let mut too_long = false;
+    /// Puts edges in place of the paths through a node of this potential.
+    fn join_neighbours(&mut self, into: &[Way], out: &[Way], potential: i64) {
         for first in into {
             // The node itself is an inner one.
             let least = first.least.min(first.length - potential);
@@ -117,14 +123,12 @@ impl Left {
                 let length = first.length + second.length;
                 if length <= FARTHEST {
                     self.join(first.end, second.end, length, least.min(first.length + second.least));
-                } else {
-                    too_long = true;
                 }
             }
         }
-        too_long
     }
 
+    /// Tidies lists that have doubled since they were tidied last, so that tidying costs a constant for each new way.
     fn tidy_if_grown(&mut self, node: u32) {
         let (out, into) = self.tidied[node as usize];
         if self.out[node as usize].len() > 2 * out + 8 || self.into[node as usize].len() > 2 * into + 8 {

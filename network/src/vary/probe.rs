@@ -348,7 +348,7 @@ fn conflict_of(merged: &Network, parts: &[Part]) -> Option<(Conflict, Vec<Part>)
             let cycle = negative_cycle(&reduction.stnu).ok().flatten()?;
             reduction.conflict(merged, &cycle)
         }
-        Err(ReduceError::Never(conflict)) => conflict,
+        Err(ReduceError::Never(violation)) => violation.conflict(merged).ok()?,
         Err(ReduceError::TooLarge) => return None,
     };
     Some((conflict, parts.to_vec()))

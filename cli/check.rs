@@ -147,7 +147,7 @@ fn verdict_line(file: &str, input: &Input, judged: Option<&Judged>, arguments: &
     let network = &judged.merged;
     let verdict = if judged.conflict.is_none() { "controllable" } else { "not controllable" };
     let program = input.program(&arguments.selection);
-    let name = if input.compilation.is_some() { format!("`{program}` is ") } else { String::new() };
+    let name = if input.compilation().is_some() { format!("`{program}` is ") } else { String::new() };
     format!(
         "{file}: {name}{verdict}{} ({} events, {} requirements, {} contingent links)",
         arguments.delays.words(),

@@ -93,7 +93,7 @@ fn emit(arguments: &Compile, input: &mut Input) -> Result<String, Refusal> {
 }
 
 fn emit_program(arguments: &Compile, input: &Input) -> Result<String, Refusal> {
-    let Some(compilation) = &input.compilation else {
+    let Some(compilation) = input.compilation() else {
         if input.network.is_none() {
             return Err(Refusal::Input);
         }

@@ -11,7 +11,7 @@ use crate::report::{Reporter, SpanJson};
 
 /// The diagnostic of a "no": in the source if there is one, else in terms of the network file.
 pub(crate) fn diagnostic(conflict: &Conflict, network: &Network, input: &Input) -> Diagnostic {
-    match &input.origins {
+    match input.origins() {
         Some((origins, program)) => explain_conflict(conflict, network, origins, *program),
         None => {
             let missing = -conflict.total;
@@ -20,7 +20,7 @@ pub(crate) fn diagnostic(conflict: &Conflict, network: &Network, input: &Input) 
                 network.name()
             );
             let place = |part: Part| {
-                let place = input.places.as_ref().and_then(|places| places.of(part))?;
+                let place = input.places().and_then(|places| places.of(part))?;
                 Some(Span::new(0, place.start, place.end))
             };
             let mut told = conflict.members.iter().filter_map(|share| Some((place(share.part)?, share)));
@@ -104,7 +104,7 @@ pub(crate) fn to_json(
                 Part::AfterOrigin => ("after-origin", None, None),
                 Part::Join(index) => ("join", requirement_ends(network, index), Some(index)),
             };
-            let origin = input.origins.as_ref().and_then(|(origins, _)| match share.part {
+            let origin = input.origins().and_then(|(origins, _)| match share.part {
                 Part::RequirementUpper(index) | Part::RequirementLower(index) | Part::Join(index) => {
                     origins.requirements.get(index)
                 }

@@ -27,7 +27,7 @@ pub(crate) fn execute(arguments: &Run, common: &Common, input: &Input, plan: Pla
         Ok(options) => options,
         Err(message) => return wrong(&message),
     };
-    let activities = input.compilation.as_ref().and_then(|compilation| compilation.episodes.as_ref());
+    let activities = input.compilation().and_then(|compilation| compilation.episodes.as_ref());
     let activities = activities.map(activities_of);
     let scope = match arguments.live.driver_events {
         DriverEvents::Starts => Scope::Starts,

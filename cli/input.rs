@@ -16,14 +16,20 @@ pub(crate) struct Input {
     pub(crate) sources: Vec<Source>,
     /// What there is to say about it.
     pub(crate) diagnostics: Vec<Diagnostic>,
-    /// How far the compiler got, if it is RMPL.
-    pub(crate) compilation: Option<Compilation>,
+    /// What kind of input it is.
+    content: Content,
     /// The network, not merged; `None` if there was an error.
     pub(crate) network: Option<Network>,
-    /// Where its constraints come from and where its program is named, if it is RMPL.
-    pub(crate) origins: Option<(Origins, Span)>,
-    /// Where its constraints stand, if it is a network.
-    pub(crate) places: Option<Places>,
+}
+
+/// What kind of input there is, and what is known of it besides the network.
+enum Content {
+    /// RMPL: how far the compiler got, and if to a network, where its constraints come from and where its program is named.
+    Program { compilation: Box<Compilation>, origins: Option<(Origins, Span)> },
+    /// A network: where its constraints stand.
+    Network(Places),
+    /// Nothing that could be read.
+    Unread,
 }
 
 /// RMPL of more bytes than this is no program a person wrote.
@@ -89,7 +95,7 @@ pub(crate) fn load_all(files: &[String], selection: &Selection) -> Input {
     if diagnostics.is_empty() {
         program(sources, selection)
     } else {
-        Input { sources, diagnostics, compilation: None, network: None, origins: None, places: None }
+        Input { sources, diagnostics, content: Content::Unread, network: None }
     }
 }
 
@@ -220,37 +226,28 @@ fn program(sources: Vec<Source>, selection: &Selection) -> Input {
         Some(plan) => (Some(plan.network), Some((plan.origins, plan.entry))),
         None => (None, None),
     };
-    Input { sources, diagnostics, compilation: Some(compilation), network, origins, places: None }
+    let content = Content::Program { compilation: Box::new(compilation), origins };
+    Input { sources, diagnostics, content, network }
 }
 
 fn network(name: &str, text: String, reader: Reader) -> Input {
     let text = without_mark(&text);
     let read = reader(text);
     let sources = vec![Source::new(name, text)];
-    let mut input = Input {
-        sources,
-        diagnostics: Vec::new(),
-        compilation: None,
-        network: None,
-        origins: None,
-        places: None,
-    };
     match read {
         Ok((network, places)) => {
-            input.network = Some(named(network, name));
-            input.places = Some(places);
+            let (content, network) = (Content::Network(places), Some(named(network, name)));
+            Input { sources, diagnostics: Vec::new(), content, network }
         }
         Err(problems) => {
-            input.diagnostics = problems
-                .into_iter()
-                .map(|problem| {
-                    let span = Span::new(0, problem.offset, problem.offset);
-                    Diagnostic::error(Code::BadNetwork, span, problem.message)
-                })
-                .collect();
+            let told = |problem: ReadProblem| {
+                let span = Span::new(0, problem.offset, problem.offset);
+                Diagnostic::error(Code::BadNetwork, span, problem.message)
+            };
+            let diagnostics = problems.into_iter().map(told).collect();
+            Input { sources, diagnostics, content: Content::Unread, network: None }
         }
     }
-    input
 }
 
 /// A network without a name takes that of its file.
@@ -274,11 +271,24 @@ impl Input {
         Input {
             sources: vec![Source::new(name, text)],
             diagnostics: vec![diagnostic],
-            compilation: None,
+            content: Content::Unread,
             network: None,
-            origins: None,
-            places: None,
         }
+    }
+
+    /// How far the compiler got, if it is RMPL.
+    pub(crate) fn compilation(&self) -> Option<&Compilation> {
+        if let Content::Program { compilation, .. } = &self.content { Some(compilation) } else { None }
+    }
+
+    /// Where its constraints come from and where its program is named, if it is RMPL.
+    pub(crate) fn origins(&self) -> Option<&(Origins, Span)> {
+        if let Content::Program { origins, .. } = &self.content { origins.as_ref() } else { None }
+    }
+
+    /// Where its constraints stand, if it is a network.
+    pub(crate) fn places(&self) -> Option<&Places> {
+        if let Content::Network(places) = &self.content { Some(places) } else { None }
     }
 
     /// Refuses options that choose among programs: a network has none.
@@ -297,7 +307,7 @@ impl Input {
 
     /// What the network is called: the program it is of, or its own name.
     pub(crate) fn program(&self, selection: &Selection) -> String {
-        match (&self.network, &self.compilation) {
+        match (&self.network, self.compilation()) {
             (Some(network), None) => network.name().to_string(),
             _ => selection.entry().to_lowercase(),
         }

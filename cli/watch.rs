@@ -5,8 +5,7 @@ use std::io::BufRead;
 use std::sync::mpsc::Receiver;
 use std::thread::JoinHandle;
 
-use kirk_executive::{AnswerNews, Desk, Happening, Said};
-use serde::Deserialize;
+use kirk_executive::{AnswerNews, Desk, Happening, Said, read_news};
 
 use crate::foreign::one_line;
 use crate::live;
@@ -102,18 +101,11 @@ pub(crate) fn read_lines(desk: Desk) {
     });
 }
 
-#[derive(Deserialize)]
-struct Body {
-    #[serde(rename = "event-ids")]
-    events: Vec<String>,
-}
-
 fn names(line: &str) -> Result<Vec<String>, String> {
     let line = line.trim_start_matches('\u{feff}').trim();
     if line.starts_with('{') {
-        return serde_json::from_str(line).map(|Body { events }| events).map_err(|error| {
-            format!("`{line}` is no news: {error}; expected an event, or {{\"event-ids\": [...]}}")
-        });
+        return read_news(line.as_bytes())
+            .map_err(|error| format!("`{line}`: {error}, or the name of an event"));
     }
     Ok(line.split_whitespace().map(str::to_string).collect())
 }

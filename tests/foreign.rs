@@ -104,7 +104,7 @@ fn a_mark_before_json_does_no_harm() {
     let news = format!("{mark}{{\"event-ids\": [\"fly:end\"]}}\n");
     let arguments = ["run", "tests/live/field.rmpl", "--speed", "20", "--format", "json"];
     let output = kirk_with_input(&arguments, news.as_bytes());
-    assert!(!stderr(&output).contains("no news"), "{}", stderr(&output));
+    assert!(!stderr(&output).contains("not news"), "{}", stderr(&output));
 
     // What is wrong in such a file is pointed at all the same.
     let wrong = file(".json", format!("{mark}{{\n  \"format\": 7}}").as_bytes());

@@ -43,6 +43,7 @@ pub(crate) use self::access::{listen, read_token};
 use self::connections::{Connection, Connections};
 use self::explained::Explained;
 use self::front::Front;
+pub use self::news::read as read_news;
 use crate::desk::Desk;
 
 /// A server that runs.

@@ -57,6 +57,7 @@ pub use clock::{Clock, clocks};
 pub use desk::{AnswerNews, Desk, Ignored, Reply};
 pub use driver::{Driver, Said};
 pub use happening::Happening;
+pub use http::read_news;
 pub use lateness::Lateness;
 pub use mission::{Http, Mission, Options, Ready, Resumption, Screen, Zero, begin, resume};
 pub use run::Ended;

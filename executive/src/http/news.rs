@@ -5,8 +5,11 @@ use std::fmt;
 use serde::Deserializer;
 use serde::de::{Error, IgnoredAny, MapAccess, Visitor};
 
-/// The events a message names, or why it is none.
-pub(super) fn read(body: &[u8]) -> Result<Vec<String>, String> {
+/// The events a message of news names, `{"event-ids": [...]}` with whatever else its sender likes to say.
+///
+/// # Errors
+/// A sentence that says why it is none.
+pub fn read(body: &[u8]) -> Result<Vec<String>, String> {
     // Some programs put a mark before it (BOM), which JSON does not know.
     let body = body.strip_prefix("\u{feff}".as_bytes()).unwrap_or(body);
     let mut json = serde_json::Deserializer::from_slice(body);

@@ -7,7 +7,7 @@ use crate::diagnostic::{Diagnostic, Edit};
 use crate::evaluate;
 use crate::form::clip;
 use crate::nearest::nearest;
-use crate::parse::instead_of_operator;
+use crate::parse::{Instead, instead_of_operator};
 use crate::source::Span;
 use crate::typed::{Between, Body, EventOf, Expression, ExpressionKind};
 
@@ -171,14 +171,7 @@ impl Analyser<'_> {
                 true => self.names.unknown_program(&call.program, home),
                 false => Diagnostic::error(Code::UnknownProgram, span, ""),
             };
-            let is_missing = problem.code == Code::UnknownProgram && call.program.package.is_none();
-            self.problems.push(match is_missing {
-                true => problem.suggest(
-                    format!("Create the program `{}`", call.program.name),
-                    [Edit::after(self.definition.span, missing_program(call))],
-                ),
-                false => problem,
-            });
+            self.problems.push(self.cured(call, problem));
             return None;
         };
         let target = &self.program.programs[program];
@@ -199,6 +192,24 @@ impl Analyser<'_> {
         }
         let arguments = call.arguments.iter().map(|value| self.argument(value)).collect();
         Some(Body::Call { program, arguments, span: call.span })
+    }
+
+    /// A call of something unknown, with what is certain to put it right.
+    fn cured(&self, call: &ast::Call, problem: Diagnostic) -> Diagnostic {
+        let name = &call.program;
+        if problem.code == Code::UnknownProgram && name.package.is_none() {
+            let text = missing_program(call);
+            return problem.suggest(
+                format!("Create the program `{}`", name.name),
+                [Edit::after(self.definition.span, text)],
+            );
+        }
+        let instead = instead_of_operator(&name.name).filter(|_| name.package.is_none());
+        match instead.and_then(Instead::word) {
+            Some("delay") if !(1..=2).contains(&call.arguments.len()) => problem,
+            Some(word) => problem.change(name.span, word),
+            None => problem,
+        }
     }
 
     fn argument(&mut self, written: &ast::Argument) -> Expression {

@@ -9,6 +9,7 @@ use crate::diagnostic::Diagnostic;
 use crate::evaluate::{self, INFINITY};
 use crate::form::clip;
 use crate::nearest::nearest;
+use crate::parse::suffixed;
 use crate::problem::Problems;
 use crate::typed::{AmountValue, Expression, ExpressionKind};
 
@@ -169,7 +170,10 @@ impl Resolver<'_> {
             Some(unit) => {
                 problem.help(format!("A unit stands before its number, in a list with it: `({unit} 5)`."))
             }
-            None => problem.meant(ident.span, near.map(|near| ident.with_name(near))),
+            None => {
+                let problem = suffixed(problem, ident.span, &ident.name);
+                problem.meant(ident.span, near.map(|near| ident.with_name(near)))
+            }
         });
     }
 }

@@ -177,7 +177,7 @@ impl Names {
         if let Some(instead) = instead_of_operator(&ident.name).filter(|_| ident.package.is_none()) {
             return Diagnostic::error(Code::UnknownOperator, ident.span, format!("RMPL has no `{name}`"))
                 .primary("neither an operator nor a program")
-                .help(instead);
+                .help(instead.help);
         }
         let from = ident.package.as_deref().map_or(home, |package| self.package(home, package));
         let visible = self.programs.keys().filter(|(package, _)| package == from || self.sees(from, package));

@@ -87,7 +87,8 @@ calculates exactly or not at all. Anything else in place of a number means nothi
 
 pub(super) const NO_BOUNDS: Page = Page {
     meaning: "A `with-temporal-constraint` whose constraint has neither a lower nor an upper bound constrains nothing.
-Probably a bound was forgotten; if not, the form can go.",
+Probably a bound was forgotten; if not, the form can go. In a `between` it says only that the first event comes first,
+since a lower bound that is not given is 0; if that is meant, `:lower-bound 0` says so.",
     wrong: "(define-control-program main ()
   (with-temporal-constraint (simple-temporal) (a)))",
     right: "(define-control-program main ()

@@ -2,16 +2,14 @@
 
 use kirk_network::{Duration, ParseDurationError};
 
-use super::{head, ident};
+use super::{ident, slips};
 use crate::ast::{Amount, AmountKind};
 use crate::calculate::Operator;
-use crate::code::Code;
-use crate::diagnostic::Diagnostic;
-use crate::form::{Form, FormKind, clip};
-use crate::nearest::nearest;
+use crate::form::{Form, FormKind, Symbol};
 use crate::problem::Problems;
 
-const UNITS: [(&str, i64); 5] = [
+/// The units of time, in microseconds.
+pub(super) const UNITS: [(&str, i64); 5] = [
     ("microseconds", 1),
     ("seconds", 1_000_000),
     ("minutes", 60_000_000),
@@ -27,6 +25,66 @@ pub(super) fn amount(form: &Form, what: &str, problems: &mut Problems) -> Amount
 /// True if this is a calculation or a number with a unit: a list that stands for a number.
 pub(super) fn is_calculation(form: &Form) -> bool {
     form.call().is_some_and(|(word, _)| Operator::of(word).is_some() || unit(word).is_some())
+}
+
+fn kind(form: &Form, what: &str, unit: i64, problems: &mut Problems) -> AmountKind {
+    match &form.kind {
+        FormKind::Number(text) => match number(text, i128::from(unit)) {
+            Ok(value) => return AmountKind::Number(value),
+            Err(error) => problems.push(slips::amount::inexact(form, what, text, error)),
+        },
+        FormKind::Keyword(word) if matches!(word.as_str(), "infinity" | "inf" | "+infinity") => {
+            return AmountKind::Infinite;
+        }
+        FormKind::Symbol(symbol) if is_name(symbol) => {
+            if let Some(name) = ident(form) {
+                return AmountKind::Named(name);
+            }
+        }
+        FormKind::List(_) => match calculation(form, what, problems) {
+            Some(kind) => return kind,
+            None => problems.push(slips::amount::no_calculation(form, what)),
+        },
+        FormKind::Error => {}
+        _ => problems.push(slips::amount::no_number(form, what)),
+    }
+    AmountKind::Error
+}
+
+/// `(minutes 5)`, `(+ x 1)`; `None` if it is neither.
+fn calculation(form: &Form, what: &str, problems: &mut Problems) -> Option<AmountKind> {
+    let (word, rest) = form.call()?;
+    if let Some(operator) = Operator::of(word) {
+        let (least, most) = operator.takes();
+        let part = |part: &Form| amount(part, "part of this calculation", problems);
+        return (least..=most)
+            .contains(&rest.len())
+            .then(|| AmountKind::Calculation(operator, rest.iter().map(part).collect()));
+    }
+    let (name, micros) = unit(word)?;
+    let [inner] = rest else { return None };
+    Some(match kind(inner, what, micros, problems) {
+        found @ (AmountKind::Named(_) | AmountKind::Unit(..) | AmountKind::Calculation(..)) => {
+            AmountKind::Unit(name, micros, Box::new(Amount { kind: found, span: inner.span }))
+        }
+        known => known,
+    })
+}
+
+/// True for what may be the name of a number: nothing that begins like a number, and no time of day.
+pub(super) fn is_name(symbol: &Symbol) -> bool {
+    let digit = |text: &str| text.starts_with(|c: char| c.is_ascii_digit());
+    let name = symbol.name.as_str();
+    match &symbol.package {
+        _ if matches!(name, "t" | "nil") => false,
+        Some(package) => !(digit(package) && digit(name)),
+        None => !digit(name.trim_start_matches('.')) && !name.contains(".."),
+    }
+}
+
+/// The unit of this name, in the plural or in the singular.
+pub(super) fn unit(word: &str) -> Option<(&'static str, i64)> {
+    UNITS.into_iter().find(|(name, _)| *name == word || name.strip_suffix('s') == Some(word))
 }
 
 /// The number of microseconds of a number as written, in units of `unit` microseconds.
@@ -75,171 +133,6 @@ fn integer(text: &str) -> Result<i128, ParseDurationError> {
         "" => Ok(0),
         digits => digits.parse().map_err(|_| ParseDurationError::TooLarge),
     }
-}
-
-fn kind(form: &Form, what: &str, unit: i64, problems: &mut Problems) -> AmountKind {
-    match &form.kind {
-        FormKind::Number(text) => match number(text, i128::from(unit)) {
-            Ok(value) => return AmountKind::Number(value),
-            Err(error) => problems.push(inexact(form, what, text, error)),
-        },
-        FormKind::Keyword(word) if matches!(word.as_str(), "infinity" | "inf" | "+infinity") => {
-            return AmountKind::Infinite;
-        }
-        FormKind::Symbol(symbol) if !matches!(symbol.name.as_str(), "t" | "nil") => {
-            let help = symbol
-                .package
-                .as_deref()
-                .map_or_else(|| suffix(&symbol.name), |hours| clock(hours, &symbol.name));
-            match (help, ident(form)) {
-                (Some(help), _) => problems.push(not_a_number(form, what).help(help)),
-                (None, Some(name)) => return AmountKind::Named(name),
-                (None, None) => {}
-            };
-        }
-        FormKind::List(_) => return list(form, what, problems),
-        FormKind::Error => {}
-        _ => problems.push(not_a_number(form, what)),
-    }
-    AmountKind::Error
-}
-
-/// `(minutes 5)`, `(+ x 1)`.
-fn list(form: &Form, what: &str, problems: &mut Problems) -> AmountKind {
-    let Some((word, rest)) = form.call() else {
-        problems.push(not_a_number(form, what).maybe_help(infix(form)));
-        return AmountKind::Error;
-    };
-    let (least, most, example) = match (Operator::of(word), unit(word)) {
-        (Some(operator), _) => {
-            let (least, most) = operator.takes();
-            (least, most, format!("({word} x{})", if most > 1 { " 1" } else { "" }))
-        }
-        (None, Some(_)) => (1, 1, format!("({word} 5)")),
-        (None, None) => {
-            let near = UNITS.iter().map(|(name, _)| *name).chain(Operator::ALL.map(Operator::word));
-            let message = format!("`{}` is neither a unit of time nor arithmetic", clip(word));
-            problems.push(
-                Diagnostic::error(Code::UnknownUnit, form.span, message)
-                    .primary(format!("{what} was expected"))
-                    .help("The units are `(microseconds 250)`, `(seconds 90)`, `(minutes 5)`, `(hours 1.5)` and `(days 1)`; arithmetic is `+`, `-`, `*`, `/`, `1+`, `1-`, `min`, `max` and `mod`.")
-                    .meant(head(form), match word {
-                        "mins" | "m" => Some("minutes"),
-                        _ => nearest(word, near),
-                    }),
-            );
-            return AmountKind::Error;
-        }
-    };
-    if rest.len() < least || rest.len() > most {
-        let number = match (least, most) {
-            (1, 1) => "one number",
-            (2, 2) => "two numbers",
-            (2, _) => "two numbers or more",
-            _ => "at least one number",
-        };
-        let message = format!("`{word}` takes {number}, not {}", rest.len());
-        problems.push(
-            Diagnostic::error(Code::WrongShape, head(form), message)
-                .primary("in this calculation")
-                .help(format!("Write `{example}`."))
-                .maybe_help((word == "min").then(|| "Minutes are written `(minutes 5)`.".to_string())),
-        );
-        return AmountKind::Error;
-    }
-    match (Operator::of(word), unit(word), rest) {
-        (Some(operator), ..) => {
-            let part = |part: &Form| amount(part, "part of this calculation", problems);
-            AmountKind::Calculation(operator, rest.iter().map(part).collect())
-        }
-        (None, Some((name, micros)), [inner]) => match kind(inner, what, micros, problems) {
-            found @ (AmountKind::Named(_) | AmountKind::Unit(..) | AmountKind::Calculation(..)) => {
-                AmountKind::Unit(name, micros, Box::new(Amount { kind: found, span: inner.span }))
-            }
-            known => known,
-        },
-        _ => AmountKind::Error,
-    }
-}
-
-/// True for the name of a unit of time.
-pub(super) fn is_unit(word: &str) -> bool {
-    unit(word).is_some()
-}
-
-/// The unit of this name, in the plural or in the singular.
-fn unit(word: &str) -> Option<(&'static str, i64)> {
-    UNITS.into_iter().find(|(name, _)| *name == word || name.strip_suffix('s') == Some(word))
-}
-
-fn not_a_number(form: &Form, what: &str) -> Diagnostic {
-    let unquoted = match &form.kind {
-        FormKind::String(text)
-            if text.starts_with(|c: char| c.is_ascii_digit()) && number(text, 1_000_000).is_ok() =>
-        {
-            Some(format!("Take the quotation marks out: `{}`.", clip(text)))
-        }
-        _ => None,
-    };
-    Diagnostic::error(Code::NotANumber, form.span, format!("{what} is not a number"))
-        .primary(format!("a duration was expected, not {}", form.describe()))
-        .help("Write seconds (`15`, `1.5`, `1/2`), a unit (`(minutes 5)`), a named number (`*wait*`) or `:infinity`.")
-        .maybe_help(unquoted)
-}
-
-/// Advice for `(5 + 3)`.
-fn infix(form: &Form) -> Option<String> {
-    let [left, operator, right] = form.list()? else { return None };
-    let word = operator.word().filter(|word| Operator::of(word).is_some())?;
-    Some(format!("The operator comes first: `({word} {} {})`.", super::text_of(left), super::text_of(right)))
-}
-
-/// Advice for `1:30`, which is read as a name in a package.
-fn clock(before: &str, after: &str) -> Option<String> {
-    let (minutes, seconds): (u32, u32) = (before.parse().ok()?, after.parse().ok()?);
-    (seconds < 60).then(|| {
-        format!("Write `(+ (minutes {minutes}) {seconds})` for minutes and seconds, `(+ (hours {minutes}) (minutes {seconds}))` for hours and minutes.")
-    })
-}
-
-fn inexact(form: &Form, what: &str, text: &str, error: ParseDurationError) -> Diagnostic {
-    let text = clip(text);
-    match error {
-        ParseDurationError::TooPrecise => Diagnostic::error(
-            Code::NotExact,
-            form.span,
-            format!("{what} is not a whole number of microseconds"),
-        )
-        .primary(format!("{text} would have to be rounded"))
-        .help("Kirk counts in microseconds and never rounds a bound: write it with at most six decimals."),
-        ParseDurationError::TooLarge => {
-            Diagnostic::error(Code::TooLarge, form.span, format!("{what} is too large"))
-                .primary("more than 10 billion seconds")
-                .help("For \"no limit\" leave the bound out or write `:infinity`.")
-        }
-        ParseDurationError::NotANumber => not_a_number(form, what),
-    }
-}
-
-/// Advice for `15s`, `5min` and the like.
-fn suffix(name: &str) -> Option<String> {
-    let other = |c: char| !c.is_ascii_digit() && c != '.';
-    let at = name.find("..").or_else(|| name.find(other)).filter(|at| *at > 0)?;
-    let (digits, unit) = name.split_at(at);
-    Some(match unit {
-        "s" | "sec" | "secs" | "second" | "seconds" => {
-            format!("A plain number is seconds: write `{digits}`.")
-        }
-        "m" | "min" | "mins" | "minute" | "minutes" => format!("Write `(minutes {digits})`."),
-        "h" | "hr" | "hour" | "hours" => format!("Write `(hours {digits})`."),
-        "d" | "day" | "days" => format!("Write `(days {digits})`."),
-        range if range.trim_start_matches(['-', '.']).starts_with(|c: char| c.is_ascii_digit()) => {
-            let most = range.trim_start_matches(['-', '.']);
-            format!("The shortest and the longest time are two numbers: `{digits}` and `{}`.", clip(most))
-        }
-        _ => "Write seconds (`15`), a unit (`(minutes 5)`), a named number (`*wait*`) or `:infinity`."
-            .to_string(),
-    })
 }
 
 #[cfg(test)]

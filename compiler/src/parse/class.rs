@@ -1,7 +1,8 @@
 //! `(defclass name (super...) ((slot :option value...)...) ...)`.
 
 use super::body::value;
-use super::{expected, ident, unexpected};
+use super::ident;
+use super::slips::{expected, unexpected};
 use crate::ast::{Class, Slot, Type};
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;

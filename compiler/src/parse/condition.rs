@@ -68,7 +68,11 @@ pub(super) fn condition(form: &Form, problems: &mut Problems) -> Option<Conditio
 fn wrong_time(word: &str, when: &Form) -> Diagnostic {
     let known: &[&str] = if word == "at" { &["start", "end"] } else { &["all"] };
     let wanted = if word == "at" { "`:start` or `:end`" } else { "`:all`" };
-    let near = nearest(when.keyword().unwrap_or_default(), known.iter().copied());
+    let near = match (word, when.keyword().unwrap_or_default()) {
+        ("at", "begin" | "beginning") => Some("start"),
+        ("at", "finish" | "stop") => Some("end"),
+        (_, written) => nearest(written, known.iter().copied()),
+    };
     let help = known.iter().map(|time| format!("`({word} :{time} ...)`")).collect::<Vec<_>>().join(" or ");
     Diagnostic::error(Code::BadCondition, when.span, format!("`{word}` needs {wanted}"))
         .primary("found this")

@@ -1,13 +1,8 @@
 //! Keyword arguments: `:lower-bound 15 :upper-bound 20`.
 
-use super::amount::{is_calculation, is_unit};
-use super::{twice, unexpected};
-use crate::code::Code;
-use crate::diagnostic::Diagnostic;
-use crate::form::{Form, FormKind, clip};
-use crate::nearest::nearest;
+use super::slips;
+use crate::form::Form;
 use crate::problem::Problems;
-use crate::source::Span;
 
 /// The values of the known keywords, in the order of `known`; everything else in `forms` is reported.
 pub(super) fn options<'a, const N: usize>(
@@ -16,81 +11,26 @@ pub(super) fn options<'a, const N: usize>(
     owner: &str,
     problems: &mut Problems,
 ) -> [Option<&'a Form>; N] {
-    let mut values: [Option<&'a Form>; N] = [None; N];
-    let mut firsts = [None; N];
-    // After a slip nobody knows which keywords are missing: those not given count as given wrongly.
-    let mut slipped = false;
-    let mut rest = forms.iter().peekable();
-    let mut last: Option<&Form> = None;
-    while let Some(form) = rest.next() {
-        let bare = form.word().filter(|word| known.contains(word));
-        if let Some(word) = bare {
-            problems.push(no_colon(form, word));
-        }
-        let Some(word) = form.keyword().or(bare) else {
-            slipped = true;
-            if !form.is_error() {
-                problems.push(no_keyword(form, last, forms, &known, owner));
-            }
-            // What comes before the next keyword is the same slip.
-            while rest.next_if(|next| next.keyword().is_none()).is_some() {}
-            continue;
-        };
-        let value = rest.next_if(|next| next.keyword().is_none_or(|word| !known.contains(&word)));
-        last = value;
-        let Some(slot) = known.iter().position(|name| *name == word) else {
-            let meant: Vec<usize> = meant(word, &known);
-            match meant.as_slice() {
-                [slot] if values[*slot].is_none() => values[*slot] = Some(value.unwrap_or(&MISSING)),
-                [_] | [] => slipped = true,
-                several => several.iter().for_each(|slot| {
-                    values[*slot].get_or_insert(&MISSING);
-                }),
-            }
-            let meant: Vec<String> = meant.iter().map(|slot| format!(":{}", known[*slot])).collect();
-            let problem = Diagnostic::error(
-                Code::UnknownKeyword,
-                form.span,
-                format!("`{owner}` has no keyword `:{}`", clip(word)),
-            )
-            .primary("not understood here")
-            .help(match meant.is_empty() {
-                false => format!("Did you mean `{}`?", meant.join("` or `")),
-                true => format!("`{owner}` understands {}.", list(&known, owner)),
-            });
-            // The shortest delay alone says nothing.
-            let longest = forms.iter().any(|form| form.keyword() == Some("max-observation-delay"));
-            let choices = meant.iter().filter(|name| longest || *name != ":min-observation-delay");
-            problems.push(choices.fold(problem, |problem, name| problem.change(form.span, name)));
-            continue;
-        };
-        if let Some(first) = firsts[slot] {
-            problems.push(twice(&format!("`:{word}`"), first, form.span));
-            continue;
-        }
-        firsts[slot] = Some(form.span);
-        match value {
-            Some(value) => values[slot] = Some(value),
-            None => {
-                values[slot] = Some(&MISSING);
-                problems.push(
-                    Diagnostic::error(Code::WrongShape, form.span, format!("`:{word}` has no value"))
-                        .primary("a value was expected after this keyword")
-                        .help(format!("Write `:{word} {}`.", example(word))),
-                );
-            }
-        }
-    }
-    if slipped {
-        for value in &mut values {
-            value.get_or_insert(&MISSING);
-        }
-    }
-    values
+    pairs(forms, known).unwrap_or_else(|| slips::options::guessed(forms, known, owner, problems))
 }
 
-/// Stands for a value that was meant and cannot be understood, which has been reported.
-static MISSING: Form = Form { span: Span { source: 0, start: 0, end: 0 }, kind: FormKind::Error };
+/// The values, if these are known keywords, each there once and with its value.
+pub(super) fn pairs<'a, const N: usize>(
+    forms: &'a [Form],
+    known: [&str; N],
+) -> Option<[Option<&'a Form>; N]> {
+    let slot = |form: &Form| known.iter().position(|name| form.keyword() == Some(name));
+    let mut values = [None; N];
+    for pair in forms.chunks(2) {
+        let [keyword, value] = pair else { return None };
+        let place = &mut values[slot(keyword)?];
+        if place.is_some() || slot(value).is_some() {
+            return None;
+        }
+        *place = Some(value);
+    }
+    Some(values)
+}
 
 /// `t` or `nil`; what cannot be understood is taken for the more permissive `t`.
 pub(super) fn flag(form: &Form, keyword: &str, problems: &mut Problems) -> bool {
@@ -98,97 +38,8 @@ pub(super) fn flag(form: &Form, keyword: &str, problems: &mut Problems) -> bool 
         Some("t") => true,
         Some("nil") => false,
         _ => {
-            if !form.is_error() {
-                let wanted = format!("`t` or `nil` after `:{keyword}`");
-                let meant = match form.word() {
-                    Some("true" | "yes" | "on") => Some("t"),
-                    Some("false" | "no" | "off") => Some("nil"),
-                    _ => None,
-                };
-                let help = "`t` means yes and `nil` means no.";
-                problems.push(unexpected(form, &wanted, help).meant(form.span, meant));
-            }
+            slips::options::no_flag(form, keyword, problems);
             true
         }
     }
-}
-
-/// The keywords a wrong one may stand for: the nearest one, else those that are longer and have its parts.
-fn meant(word: &str, known: &[&str]) -> Vec<usize> {
-    let slots =
-        |wanted: &dyn Fn(&str) -> bool| (0..known.len()).filter(|slot| wanted(known[*slot])).collect();
-    let parts_in = |name: &str| {
-        let mut parts = name.split('-');
-        word.split(['-', '_']).all(|part| parts.any(|known| known == part))
-    };
-    let longer: Vec<usize> = slots(&parts_in);
-    if longer.len() > 1 {
-        return longer;
-    }
-    let near = nearest(word, known.iter().copied());
-    let synonym = match word {
-        "max" | "maximum" | "most" | "longest" => Some("upper-bound"),
-        "min" | "minimum" | "least" | "shortest" => Some("lower-bound"),
-        _ => None,
-    };
-    // `:min` begins like the name of a delay, and still is a bound.
-    match synonym.filter(|bound| known.contains(bound)).or(near) {
-        Some(near) if known.contains(&near) => slots(&|name| name == near),
-        _ => longer,
-    }
-}
-
-fn no_colon(form: &Form, word: &str) -> Diagnostic {
-    Diagnostic::error(Code::WrongShape, form.span, format!("the colon of `:{word}` is missing"))
-        .primary("a keyword was expected")
-        .help(format!("Write `:{word}`: without the colon it is the name of something else."))
-        .change(form.span, format!(":{word}"))
-}
-
-/// Something stands where a keyword belongs: numbers without their keywords, or a unit after its number.
-fn no_keyword(form: &Form, last: Option<&Form>, forms: &[Form], known: &[&str], owner: &str) -> Diagnostic {
-    let problem = unexpected(
-        form,
-        &format!("a keyword of `{owner}`"),
-        &format!("`{owner}` understands {}.", list(known, owner)),
-    );
-    let numbers: Vec<String> = forms
-        .iter()
-        .map_while(|form| matches!(form.kind, FormKind::Number(_)).then(|| super::text_of(form)))
-        .collect();
-    let help = match (last.map(|form| &form.kind), form.word(), numbers.as_slice()) {
-        (Some(FormKind::Number(number)), Some(word), _) if is_unit(word) => {
-            Some(format!("A unit stands before its number: `({word} {})`.", clip(number)))
-        }
-        _ if form.call().is_some_and(|_| !is_calculation(form)) && last.is_some() => {
-            Some("Is a `)` missing before it?".to_string())
-        }
-        (Some(FormKind::Number(_)), _, _) if matches!(form.kind, FormKind::Number(_)) => {
-            let given = |bound: &&str| forms.iter().any(|form| form.keyword() == Some(*bound));
-            let missing = ["lower-bound", "upper-bound"].into_iter().find(|bound| !given(bound));
-            missing
-                .filter(|bound| known.contains(bound))
-                .map(|bound| format!("`:{bound}` is missing before it: `:{bound} {}`.", super::text_of(form)))
-        }
-        (None, _, [both]) if known.contains(&"upper-bound") => {
-            Some(format!("Every bound has its keyword: `({owner} :lower-bound {both} :upper-bound {both})`."))
-        }
-        (None, _, [lower, upper, ..]) if known.contains(&"upper-bound") => Some(format!(
-            "Every bound has its keyword: `({owner} :lower-bound {lower} :upper-bound {upper})`."
-        )),
-        _ => None,
-    };
-    problem.maybe_help(help)
-}
-
-/// A value such as this keyword takes.
-fn example(word: &str) -> &'static str {
-    if matches!(word, "contingent" | "slack") { "t" } else { "5" }
-}
-
-/// The keywords to write. `simple` knows `:contingent` only to say that it belongs to `duration`.
-fn list(known: &[&str], owner: &str) -> String {
-    let wanted = known.iter().filter(|word| owner != "simple" || **word != "contingent");
-    let words: Vec<String> = wanted.map(|word| format!(":{word}")).collect();
-    super::one_of(&words.iter().map(String::as_str).collect::<Vec<_>>())
 }

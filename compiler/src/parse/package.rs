@@ -1,6 +1,7 @@
 //! `(defpackage #:p (:use #:q) ...)` and `(in-package #:p)`.
 
-use super::{DEFAULT_PACKAGE, expected, unexpected};
+use super::DEFAULT_PACKAGE;
+use super::slips::{expected, unexpected};
 use crate::ast::{Ident, Import, Package};
 use crate::code::Code;
 use crate::diagnostic::{Diagnostic, Edit};

@@ -1,0 +1,181 @@
+//! `(define-control-program name (parameter...) (declare ...) body...)`.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::body::{OPERATORS, bodies};
+use super::slips::{self, unexpected};
+use super::{declaration, ident};
+use crate::ast::{ControlProgram, Ident};
+use crate::code::Code;
+use crate::diagnostic::Diagnostic;
+use crate::form::{Form, FormKind, clip};
+use crate::problem::Problems;
+use crate::source::Span;
+
+/// Parses the definition of a program; `defined` are the names of all programs.
+pub(super) fn control_program(
+    form: &Form,
+    rest: &[Form],
+    home: &str,
+    defined: &BTreeSet<String>,
+    problems: &mut Problems,
+) -> Option<ControlProgram> {
+    let Some((name, rest)) = rest.split_first() else {
+        slips::definition::no_name(form, problems);
+        return None;
+    };
+    let listed = rest.split_first().filter(|(list, rest)| is_parameters(list, rest, defined));
+    let (name, inside) = match ident(name) {
+        Some(name) => (name, None),
+        None => slips::definition::dressed_name(form, name, listed.is_some(), problems)?,
+    };
+    let mut program = ControlProgram {
+        home: home.to_string(),
+        name,
+        parameters: Vec::new(),
+        documentation: None,
+        primitive: false,
+        duration: None,
+        requires: None,
+        effect: None,
+        body: Vec::new(),
+        span: form.span,
+        damaged: problems.is_damaged(form.span),
+    };
+    let rest = match (inside, listed) {
+        (Some(inside), _) => {
+            program.parameters = parameters(inside, problems);
+            rest
+        }
+        (None, Some((list, rest))) => {
+            program.parameters = parameters(list.list().unwrap_or_default(), problems);
+            rest
+        }
+        (None, None) => {
+            problems.push(slips::definition::no_parameters(&program.name));
+            program.damaged = true;
+            rest
+        }
+    };
+    content(rest, &mut program, problems);
+    Some(program)
+}
+
+/// True for a list of parameters; where it is forgotten, a declaration or a body form stands in its place.
+fn is_parameters(form: &Form, rest: &[Form], defined: &BTreeSet<String>) -> bool {
+    match form.list() {
+        Some(items) => !slips::definition::is_body(items, rest, defined),
+        None => form.word() == Some("nil"),
+    }
+}
+
+/// What stands after the parameters: documentation, declarations, the body.
+fn content(items: &[Form], program: &mut ControlProgram, problems: &mut Problems) {
+    let mut body: Vec<Form> = Vec::new();
+    let mut rest = items;
+    while let Some((item, after)) = rest.split_first() {
+        rest = after;
+        match &item.kind {
+            FormKind::String(text)
+                if program.documentation.is_none() && body.is_empty() && items.len() - after.len() < 3 =>
+            {
+                program.documentation = Some(text.clone());
+            }
+            FormKind::List(_) if is_declaration(item) || slips::definition::is_declare(item, problems) => {
+                declaration::declare(&item.list().unwrap_or_default()[1..], program, problems);
+            }
+            FormKind::Keyword(_) if body.is_empty() && program.duration.is_some() => {
+                rest = slips::declaration::fallen_out(item, rest, program, problems);
+                program.damaged = true;
+            }
+            _ => body.push(item.clone()),
+        }
+    }
+    if slips::declaration::are_bare(&body, program.duration.is_some()) {
+        problems.push(slips::declaration::bare(&body));
+        declaration::declare(&body, program, problems);
+        return;
+    }
+    let before = problems.errors();
+    program.body = bodies(&body, problems);
+    program.damaged |= problems.errors() > before || program.body.len() < body.len();
+}
+
+/// True for `(declare ...)`.
+fn is_declaration(item: &Form) -> bool {
+    item.call().is_some_and(|(word, _)| word == "declare")
+}
+
+fn parameters(items: &[Form], problems: &mut Problems) -> Vec<Ident> {
+    let mut names: Vec<Ident> = Vec::new();
+    let mut firsts: BTreeMap<String, Span> = BTreeMap::new();
+    for item in items {
+        match ident(item) {
+            Some(name) if name.name.starts_with('&') => problems.push(
+                Diagnostic::error(
+                    Code::WrongShape,
+                    item.span,
+                    format!("`{}` is not understood here", clip(&name.name)),
+                )
+                .primary("a parameter was expected")
+                .help("Every parameter of a control program is given by place; there are no optional ones."),
+            ),
+            Some(name) if matches!(name.name.as_str(), "t" | "nil") => {
+                problems.push(reserved(item, &name.name, "a parameter"));
+                names.push(name);
+            }
+            Some(name) => {
+                if let Some(first) = firsts.insert(name.name.clone(), item.span) {
+                    let message = format!("the parameter `{}` is there twice", clip(&name.name));
+                    problems.push(
+                        Diagnostic::error(Code::DefinedTwice, item.span, message)
+                            .primary("again here")
+                            .label(first, "first here"),
+                    );
+                }
+                names.push(name);
+            }
+            None if item.is_error() => {}
+            None => problems.push(unexpected(
+                item,
+                "the name of a parameter",
+                "Parameters are names: `(glider to)`.",
+            )),
+        }
+    }
+    names
+}
+
+/// Refuses programs that have the names of operators: `(delay)` could never mean them.
+pub(super) fn reserved_names(forms: &[Form], problems: &mut Problems) {
+    let mut taken: Vec<&str> = Vec::new();
+    for form in forms {
+        let Some(("define-control-program", [name, ..])) = form.call() else { continue };
+        let Some(word) = name.word().filter(|word| is_reserved(word)) else { continue };
+        problems.push(reserved(name, word, "a program"));
+        taken.push(word);
+    }
+    // What is wrong with the calls of such a program, read as the operator, follows from that.
+    let mut open: Vec<&Form> = if taken.is_empty() { Vec::new() } else { forms.iter().collect() };
+    while let Some(form) = open.pop() {
+        match form.call() {
+            Some((word, _)) if taken.contains(&word) => problems.mute(form.span),
+            _ => open.extend(form.list().unwrap_or_default()),
+        }
+    }
+}
+
+fn is_reserved(word: &str) -> bool {
+    OPERATORS.contains(&word) || matches!(word, "declare" | "t" | "nil")
+}
+
+fn reserved(name: &Form, word: &str, what: &str) -> Diagnostic {
+    let meaning = match word {
+        "t" => "`t` means yes",
+        "nil" => "`nil` means no, or nothing",
+        _ => "it is an operator",
+    };
+    Diagnostic::error(Code::ReservedName, name.span, format!("{what} cannot be called `{word}`"))
+        .primary(meaning)
+        .help(format!("Give it another name, such as `{word}-1`, here and wherever it is used."))
+}

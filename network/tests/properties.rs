@@ -6,13 +6,17 @@
 
 mod oracle;
 
+use std::cell::Cell;
+use std::time::Instant;
+
 use kirk_network::check::conflict;
 use kirk_network::controllability::{is_controllable, negative_cycle};
 use kirk_network::merge::merge;
-use kirk_network::reduce::{Reduction, reduce};
+use kirk_network::reduce::{ReduceError, Reduction, reduce};
+use kirk_network::stnu::{LIMIT, TooLarge};
 use kirk_network::{
-    Bound, Conflict, ContingentLink, Delay, Duration, EventId, Network, Part, Requirement, Verdict, check,
-    dispatchable,
+    Bound, Conflict, ContingentLink, Delay, Duration, Event, EventId, Name, Network, Part, Requirement,
+    Verdict, check, dispatchable,
 };
 use oracle::random::{self, Random, Shape};
 use oracle::{closure, game};
@@ -59,6 +63,76 @@ fn deciding_explaining_and_solving_agree() {
         }
         Err(_) => !controllable(network),
     });
+}
+
+#[test]
+fn deciding_and_compiling_refuse_the_same_networks_as_too_large() {
+    let shapes = [Shape::tiny_delayed(), Shape::medium(), Shape::medium().chained()];
+    let (accepted, refused) = (Cell::new(0), Cell::new(0));
+    holds(4000, &shapes, |network, seed| {
+        // Scaled to where sums come near the limit, or go beyond.
+        let sum: i64 = bounds(network).map(|bound| bound.abs().as_micros()).sum();
+        let factor = LIMIT / (8 * sum.max(1)) * (1 + seed as i64 % 24);
+        let large = random::scaled(network, factor);
+        let verdict = check(&large).map(|verdict| verdict == Verdict::Controllable);
+        let compiled = match reduce(&merge(&large).network) {
+            Ok(Reduction { stnu, .. }) => dispatchable(&stnu).map(|form| form.is_some()),
+            Err(ReduceError::TooLarge) => Err(TooLarge),
+            Err(ReduceError::Never(_)) => Ok(false),
+        };
+        let seen = if verdict.is_ok() { &accepted } else { &refused };
+        seen.set(seen.get() + 1);
+        match (verdict, compiled) {
+            (Ok(true), Ok(true)) => controllable(network),
+            (Ok(true), _) | (_, Ok(true)) => false,
+            (Ok(false), _) => !controllable(network),
+            (Err(TooLarge), _) => true,
+        }
+    });
+    let all = accepted.get() + refused.get();
+    assert!(20 * accepted.get().min(refused.get()) > all, "{accepted:?} were accepted, {refused:?} refused");
+}
+
+fn bounds(network: &Network) -> impl Iterator<Item = Duration> {
+    let required =
+        network.requirements().iter().flat_map(|requirement| [requirement.lower, requirement.upper]);
+    let natural = network.contingents().iter().flat_map(|link| [link.upper.into(), link.delay.max]);
+    required.chain(natural).filter_map(Bound::finite)
+}
+
+/// Two rounds of Bellman-Ford in the order of the events, whatever the order of their numbers. One by one against that
+/// order it would take as many rounds as there are events: many minutes.
+#[test]
+#[allow(clippy::disallowed_methods, reason = "a test may look at the clock")]
+fn a_sequence_of_any_length_and_order_is_decided_in_time_linear_in_its_length() {
+    const ACTIVITIES: u32 = 190_000;
+    let mut place: Vec<u32> = (1..=2 * ACTIVITIES).collect();
+    for order in ["in order", "backwards", "shuffled"] {
+        match order {
+            "backwards" => place.reverse(),
+            "shuffled" => Random::new(7).shuffle(&mut place),
+            _ => {}
+        }
+        let events = (0..=2 * ACTIVITIES)
+            .map(|event| Event { names: vec![Name { text: format!("event.{event}"), internal: false }] });
+        let event = |number: u32| EventId(if number == 0 { 0 } else { place[number as usize - 1] });
+        let requirement = |number: u32, lower, upper| Requirement {
+            from: event(number),
+            to: event(number + 1),
+            lower: Bound::Finite(Duration::from_secs(lower)),
+            upper,
+        };
+        let sequence = (0..ACTIVITIES).flat_map(|activity| {
+            let slack = requirement(2 * activity, 0, Bound::Infinite);
+            [slack, requirement(2 * activity + 1, 1, Bound::Finite(Duration::from_secs(2)))]
+        });
+        let requirements = sequence.collect();
+        let network =
+            Network::new(String::new(), EventId(0), events.collect(), requirements, Vec::new()).unwrap();
+        let start = Instant::now();
+        assert!(controllable(&network));
+        assert!(start.elapsed().as_secs() < 60, "{order}: {:?}", start.elapsed());
+    }
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use kirk_compiler::{Code, Compilation, Diagnostic, Options, Origins, Source, Span, compile};
 use kirk_network::json::ReadProblem;
-use kirk_network::{Network, Places, graphml, json, kinds, plain};
+use kirk_network::{Network, SourceMap, graphml, json, kinds, plain};
 
 use crate::args::Selection;
 
@@ -27,7 +27,7 @@ enum Content {
     /// RMPL: how far the compiler got, and if to a network, where its constraints come from and where its program is named.
     Program { compilation: Box<Compilation>, origins: Option<(Origins, Span)> },
     /// A network: where its constraints stand.
-    Network(Places),
+    Network(SourceMap),
     /// Nothing that could be read.
     Unread,
 }
@@ -42,7 +42,7 @@ enum Kind {
     Network(Reader),
 }
 
-type Reader = fn(&str) -> Result<(Network, Places), Vec<ReadProblem>>;
+type Reader = fn(&str) -> Result<(Network, SourceMap), Vec<ReadProblem>>;
 
 /// Reads and compiles an input file; `-` is standard input.
 pub(crate) fn load(file: &str, selection: &Selection) -> Input {
@@ -169,21 +169,23 @@ fn kind(file: &str, text: &str) -> Kind {
     let start = text.trim_start_matches('\u{feff}').trim_start();
     match extension.as_deref() {
         Some("rmpl" | "lisp") => Kind::Rmpl,
-        Some("json") => Kind::Network(json::read_with_places),
-        Some("stnu") => Kind::Network(graphml::read_with_places),
-        Some("plainstnu") => Kind::Network(plain::read_with_places),
+        Some("json") => Kind::Network(json::read_with_source_map),
+        Some("stnu") => Kind::Network(graphml::read_with_source_map),
+        Some("plainstnu") => Kind::Network(plain::read_with_source_map),
         Some("ostnu") => Kind::Network(with_oracles),
-        _ if start.starts_with('{') => Kind::Network(json::read_with_places),
-        _ if start.starts_with('<') && start.contains("graphml") => Kind::Network(graphml::read_with_places),
+        _ if start.starts_with('{') => Kind::Network(json::read_with_source_map),
+        _ if start.starts_with('<') && start.contains("graphml") => {
+            Kind::Network(graphml::read_with_source_map)
+        }
         _ if start.starts_with("# ") && start.contains("\n# Time-Point Names") => {
-            Kind::Network(plain::read_with_places)
+            Kind::Network(plain::read_with_source_map)
         }
         _ => Kind::Rmpl,
     }
 }
 
 /// What the oracles of a network tell is not part of the model: without them the verdict would be another.
-fn with_oracles(_: &str) -> Result<(Network, Places), Vec<ReadProblem>> {
+fn with_oracles(_: &str) -> Result<(Network, SourceMap), Vec<ReadProblem>> {
     let refused = kinds::check("OSTNU").err().unwrap_or_default();
     Err(vec![ReadProblem { offset: 0, message: format!("the kind of network is {refused}") }])
 }
@@ -287,7 +289,7 @@ impl Input {
     }
 
     /// Where its constraints stand, if it is a network.
-    pub(crate) fn places(&self) -> Option<&Places> {
+    pub(crate) fn places(&self) -> Option<&SourceMap> {
         if let Content::Network(places) = &self.content { Some(places) } else { None }
     }
 

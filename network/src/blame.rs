@@ -32,7 +32,7 @@ impl Violation {
     /// [`TooLarge`] if the durations add up to more than 64-bit microseconds can hold.
     pub(crate) fn conflict(&self, network: &Network) -> Result<Conflict, TooLarge> {
         let mut tally = Tally { network, times: BTreeMap::new() };
-        let meet = Trees::new(network)?.meet(network, self.from, self.to);
+        let meet = Trees::new(network)?.lowest_common_ancestor(network, self.from, self.to);
         tally.add(self.source.part(), 1);
         tally.path(meet, self.to, Part::LinkUpper, 1);
         tally.path(meet, self.from, Part::LinkLower, 1);

@@ -28,8 +28,8 @@ use std::ops::Range;
 use crate::json::ReadProblem;
 use crate::kinds;
 use crate::model::{ContingentLink, Delay, Event, EventId, Name, Network, normal_name};
-use crate::places::Places;
 use crate::plain::{Intervals, about_link, unquoted};
+use crate::source_map::SourceMap;
 use crate::time::Duration;
 use scan::{Data, Document, Element, scan};
 
@@ -40,11 +40,11 @@ pub use write::{WriteError, write};
 /// Edges in opposite directions between two events become one requirement, where the first of the two stands. Entities
 /// other than those of XML itself are not expanded.
 pub fn read(text: &str) -> Result<Network, Vec<ReadProblem>> {
-    read_with_places(text).map(|(network, _)| network)
+    read_with_source_map(text).map(|(network, _)| network)
 }
 
 /// Reads a `.stnu` file as [`read`] does, and remembers where its constraints stand.
-pub fn read_with_places(text: &str) -> Result<(Network, Places), Vec<ReadProblem>> {
+pub fn read_with_source_map(text: &str) -> Result<(Network, SourceMap), Vec<ReadProblem>> {
     let (document, problems) = scan(text);
     let mut reader = Reader { text, problems };
     let network = document.and_then(|document| reader.network(&document));
@@ -76,7 +76,7 @@ struct Reader<'t> {
 }
 
 impl Reader<'_> {
-    fn network(&mut self, document: &Document) -> Option<(Network, Places)> {
+    fn network(&mut self, document: &Document) -> Option<(Network, SourceMap)> {
         let mut name = String::new();
         for data in &document.graph_data {
             match data.key.as_str() {
@@ -144,7 +144,7 @@ impl Reader<'_> {
         match Network::new(name, origin?, events, intervals.requirements, contingents) {
             Ok(network) => {
                 let contingents = links.iter().map(|(element, _)| self.tag(element)).collect();
-                Some((network, Places { requirements: intervals.places, contingents }))
+                Some((network, SourceMap { requirements: intervals.places, contingents }))
             }
             Err(errors) => {
                 for error in errors {

@@ -7,7 +7,7 @@ mod writer;
 use serde::{Deserialize, Serialize};
 
 use crate::model::Network;
-use crate::places::Places;
+use crate::source_map::SourceMap;
 use crate::time::Duration;
 
 pub use fields::locate;
@@ -27,11 +27,11 @@ pub struct ReadProblem {
 
 /// Reads a network file, or lists everything that is wrong with it.
 pub fn read(text: &str) -> Result<Network, Vec<ReadProblem>> {
-    read_with_places(text).map(|(network, _)| network)
+    read_with_source_map(text).map(|(network, _)| network)
 }
 
 /// Reads a network file as [`read`] does, and remembers where its constraints stand.
-pub fn read_with_places(text: &str) -> Result<(Network, Places), Vec<ReadProblem>> {
+pub fn read_with_source_map(text: &str) -> Result<(Network, SourceMap), Vec<ReadProblem>> {
     reader::read(text)
 }
 

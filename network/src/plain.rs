@@ -19,18 +19,18 @@ use crate::kinds;
 use crate::model::{
     ContingentLink, Delay, Event, EventId, ModelError, Name, Network, Requirement, normal_name,
 };
-use crate::places::Places;
+use crate::source_map::SourceMap;
 use crate::time::{Bound, Duration};
 
 /// Reads a plain text STNU, or lists everything that is wrong with it. The network has no name and no delays.
 ///
 /// Edges in opposite directions between two events become one requirement, where the first of the two stands.
 pub fn read(text: &str) -> Result<Network, Vec<ReadProblem>> {
-    read_with_places(text).map(|(network, _)| network)
+    read_with_source_map(text).map(|(network, _)| network)
 }
 
 /// Reads a plain text STNU as [`read`] does, and remembers where its constraints stand.
-pub fn read_with_places(text: &str) -> Result<(Network, Places), Vec<ReadProblem>> {
+pub fn read_with_source_map(text: &str) -> Result<(Network, SourceMap), Vec<ReadProblem>> {
     let mut reader = Reader::default();
     let body = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut offset = text.len() - body.len();
@@ -220,7 +220,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn network(&mut self, end: usize) -> Option<(Network, Places)> {
+    fn network(&mut self, end: usize) -> Option<(Network, SourceMap)> {
         if !self.has_points {
             self.problem(end, "there is no section `# Time-Point Names`".to_string());
             return None;
@@ -282,7 +282,7 @@ impl<'a> Reader<'a> {
         match Network::new(String::new(), origin?, events, intervals.requirements, contingents) {
             Ok(network) => {
                 let contingents = links.iter().map(Line::range).collect();
-                Some((network, Places { requirements: intervals.places, contingents }))
+                Some((network, SourceMap { requirements: intervals.places, contingents }))
             }
             Err(errors) => {
                 for error in errors {

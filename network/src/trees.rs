@@ -65,7 +65,12 @@ impl Trees {
     }
 
     /// The lowest common ancestor of two events of one tree.
-    pub(crate) fn meet(&self, network: &Network, mut a: EventId, mut b: EventId) -> EventId {
+    pub(crate) fn lowest_common_ancestor(
+        &self,
+        network: &Network,
+        mut a: EventId,
+        mut b: EventId,
+    ) -> EventId {
         while a != b {
             if self.depth[a.index()] < self.depth[b.index()] {
                 std::mem::swap(&mut a, &mut b);
@@ -85,7 +90,7 @@ impl Trees {
         if self.root[from.index()] != self.root[to.index()] {
             return Ok(None);
         }
-        let meet = self.meet(network, from, to);
+        let meet = self.lowest_common_ancestor(network, from, to);
         let sum = |mut event: EventId, bound: fn(&ContingentLink) -> Duration| {
             let mut sum = 0;
             while event != meet {

@@ -552,7 +552,7 @@ fn names_in_quotes_are_the_names_without_them() {
     let names: Vec<&str> = read.event_ids().map(|event| read.id(event)).collect();
     assert_eq!(names, ["Z", "the door", "it''s open", "isn't"]);
     // A place is where the text stands, quotes and all.
-    let (_, places) = plain::read_with_places(text).unwrap();
+    let (_, places) = plain::read_with_source_map(text).unwrap();
     assert_eq!(&text[places.requirements[0][0].clone()], "\"the door\" 10 'it''s open'");
 
     let xml = sample("lane50_dc_000.stnu");

@@ -11,11 +11,11 @@ use super::{FORMAT, ReadProblem};
 use crate::model::{
     ContingentLink, Delay, Event, EventId, ModelError, Name, Network, Requirement, normal_name,
 };
-use crate::places::Places;
+use crate::source_map::SourceMap;
 use crate::time::{Bound, Duration};
 
 /// Reads a network file, and remembers where its constraints stand.
-pub(super) fn read(text: &str) -> Result<(Network, Places), Vec<ReadProblem>> {
+pub(super) fn read(text: &str) -> Result<(Network, SourceMap), Vec<ReadProblem>> {
     let Fields(fields) = serde_json::from_str(text).map_err(|error| vec![locate(text, &error)])?;
     let mut reader = Reader { text, problems: Vec::new(), event_of: BTreeMap::new() };
     let file = reader.file(fields);
@@ -250,7 +250,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn network(&mut self, file: &FileText<'a>) -> Option<(Network, Places)> {
+    fn network(&mut self, file: &FileText<'a>) -> Option<(Network, SourceMap)> {
         self.expect("format", file.format, FORMAT, |format| {
             format!("the format is `{format}`; this kirk reads `{FORMAT}`")
         });
@@ -364,12 +364,12 @@ impl<'a> Reader<'a> {
         found
     }
 
-    fn places(&self, elements: &Elements<'a>) -> Places {
+    fn places(&self, elements: &Elements<'a>) -> SourceMap {
         let range = |raw: &&RawValue| {
             let start = self.offset(raw);
             start..start + raw.get().len()
         };
-        Places {
+        SourceMap {
             requirements: elements.requirements.iter().map(|raw| [range(raw), range(raw)]).collect(),
             contingents: elements.contingents.iter().map(range).collect(),
         }

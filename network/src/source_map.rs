@@ -6,14 +6,14 @@ use crate::conflict::Part;
 
 /// Byte ranges in the text of a network file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Places {
+pub struct SourceMap {
     /// For each requirement, what says its upper bound and what says its lower one.
     pub requirements: Vec<[Range<usize>; 2]>,
     /// For each contingent link, the element it begins with.
     pub contingents: Vec<Range<usize>>,
 }
 
-impl Places {
+impl SourceMap {
     /// What says this part of a conflict; `None` for what goes without saying.
     pub fn of(&self, part: Part) -> Option<Range<usize>> {
         match part {

@@ -148,12 +148,13 @@ fn verdict_line(file: &str, input: &Input, judged: Option<&Judged>, arguments: &
     let verdict = if judged.conflict.is_none() { "controllable" } else { "not controllable" };
     let program = input.program(&arguments.selection);
     let name = if input.compilation().is_some() { format!("`{program}` is ") } else { String::new() };
+    let count = |number: usize, what: &str| format!("{number} {what}{}", if number == 1 { "" } else { "s" });
     format!(
-        "{file}: {name}{verdict}{} ({} events, {} requirements, {} contingent links)",
+        "{file}: {name}{verdict}{} ({}, {}, {})",
         arguments.delays.words(),
-        network.events().len(),
-        network.requirements().len(),
-        network.contingents().len()
+        count(network.events().len(), "event"),
+        count(network.requirements().len(), "requirement"),
+        count(network.contingents().len(), "contingent link")
     )
 }
 

@@ -92,7 +92,10 @@ fn not_a_number(expression: &Expression, value: &Value, what: &str) -> Diagnosti
             NUMBER => format!("nothing says what `{}` is, so kirk cannot calculate with it", clip(name)),
             _ => format!("nothing says what `{}` is, so {what} is unknown", clip(name)),
         },
-        (_, ValueKind::Symbol(name)) if name == INFINITY => "kirk does not calculate with `:infinity`".into(),
+        (_, ValueKind::Symbol(name)) if name == INFINITY && what == NUMBER => {
+            "`:infinity` is no number to calculate with".into()
+        }
+        (_, ValueKind::Symbol(name)) if name == INFINITY => format!("{what} cannot be `:infinity`"),
         (ExpressionKind::Variable(_, name), _) => {
             format!("`{}` is not a number here, so it cannot be {what}", clip(name))
         }

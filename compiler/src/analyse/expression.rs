@@ -163,6 +163,10 @@ impl Resolver<'_> {
             "day" | "days" => Some("days"),
             _ => None,
         };
+        if let Some((mark, name)) = quoted_elsewhere(&ident.name).filter(|_| ident.package.is_none()) {
+            self.problems.push(curly_quote(ident, mark, name));
+            return;
+        }
         let problem = Diagnostic::error(Code::UnknownName, ident.span, format!("nothing is called `{}`", clip(&ident.name)))
             .primary("neither a parameter or variable here nor a named number")
             .help("A value is a number, a string, `t`, `nil`, a parameter, a name from `let`, `dotimes` or `defparameter`. A symbol is quoted: `'name`.");
@@ -176,6 +180,20 @@ impl Resolver<'_> {
             }
         });
     }
+}
+
+/// A name with a mark before it that looks like the quote: the mark, and the name.
+fn quoted_elsewhere(name: &str) -> Option<(char, &str)> {
+    let mark = name.chars().next().filter(|c| "\u{2018}\u{2019}\u{b4}\u{2bc}\u{2032}".contains(*c))?;
+    Some((mark, &name[mark.len_utf8()..])).filter(|(_, name)| !name.is_empty())
+}
+
+fn curly_quote(ident: &Ident, mark: char, name: &str) -> Diagnostic {
+    let message = format!("the mark before `{}` is no quote: it is U+{:04X}", clip(name), u32::from(mark));
+    Diagnostic::error(Code::UnknownName, ident.span, message)
+        .primary("read as a name that begins with this mark")
+        .help("A symbol is quoted with the straight apostrophe of the keyboard, U+0027. Word processors change it.")
+        .change(ident.span, format!("'{name}"))
 }
 
 fn infinite() -> ExpressionKind {

@@ -14,8 +14,29 @@ pub(super) fn notes_on_bounds(root: &Episode) -> Vec<Diagnostic> {
     notes
 }
 
-/// How long an episode can take by what is inside it alone.
+/// How long an episode can take by what is inside it alone: as long as its bounds allow, and at least as long as Nature
+/// may make it take, whatever the bounds say.
 fn longest(episode: &Episode, notes: &mut Vec<Diagnostic>) -> Bound {
+    let allowed = allowed(episode, notes);
+    match (allowed, forced(episode)) {
+        (Bound::Finite(allowed), Bound::Finite(forced)) => Bound::Finite(allowed.max(forced)),
+        _ => Bound::Infinite,
+    }
+}
+
+/// How long Nature alone may make an episode take.
+fn forced(episode: &Episode) -> Bound {
+    let zero = Bound::Finite(Duration::ZERO);
+    let inside = episode.parts.iter().map(forced);
+    match (episode.kind, &episode.duration) {
+        (Kind::Primitive, Some(duration)) if episode.contingent => duration.upper,
+        (Kind::Primitive | Kind::Delay, _) => zero,
+        (Kind::Parallel, _) => inside.reduce(most).unwrap_or(zero),
+        (Kind::Program | Kind::Sequence | Kind::WithTemporalConstraint, _) => inside.fold(zero, sum),
+    }
+}
+
+fn allowed(episode: &Episode, notes: &mut Vec<Diagnostic>) -> Bound {
     let inside: Vec<Bound> = episode.parts.iter().map(|part| longest(part, notes)).collect();
     let inside = inside.into_iter();
     let own = episode.duration.as_ref().map_or(Bound::Infinite, |duration| duration.upper);
@@ -87,6 +108,13 @@ fn least(a: Bound, b: Bound) -> Bound {
         (Bound::Finite(a), Bound::Finite(b)) => Bound::Finite(a.min(b)),
         (Bound::Finite(a), Bound::Infinite) | (Bound::Infinite, Bound::Finite(a)) => Bound::Finite(a),
         (Bound::Infinite, Bound::Infinite) => Bound::Infinite,
+    }
+}
+
+fn most(a: Bound, b: Bound) -> Bound {
+    match (a, b) {
+        (Bound::Finite(a), Bound::Finite(b)) => Bound::Finite(a.max(b)),
+        _ => Bound::Infinite,
     }
 }
 

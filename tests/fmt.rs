@@ -30,6 +30,48 @@ fn files_are_laid_out_in_place_and_checked() {
     assert_eq!(kirk(&["fmt", "--check", &tidy, &untidy]).status.code(), Some(0));
 }
 
+/// The names in a folder, sorted.
+fn names(folder: &std::path::Path) -> Vec<String> {
+    let mut names: Vec<String> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn what_cannot_be_written_is_left_as_it_was() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.rmpl");
+    // Longer than any file may be below: 2 blocks of 512 bytes.
+    let program = UNTIDY.repeat(40).replace("main", "other");
+    fs::write(&file, &program).unwrap();
+    let script =
+        format!("trap '' XFSZ; ulimit -f 2; exec '{}' fmt '{}'", env!("CARGO_BIN_EXE_kirk"), file.display());
+    let output = std::process::Command::new("sh").args(["-c", &script]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert!(stderr(&output).contains("which is as it was"), "{}", stderr(&output));
+    assert_eq!(fs::read_to_string(&file).unwrap(), program);
+    assert_eq!(names(folder.path()), ["a.rmpl"], "nothing is left lying about");
+}
+
+#[test]
+fn links_and_permissions_stay() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+    let folder = tempfile::tempdir().unwrap();
+    let (real, link) = (folder.path().join("real.rmpl"), folder.path().join("link.rmpl"));
+    fs::write(&real, UNTIDY).unwrap();
+    fs::set_permissions(&real, fs::Permissions::from_mode(0o640)).unwrap();
+    symlink("real.rmpl", &link).unwrap();
+    let output = kirk(&["fmt", link.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+    assert_eq!(fs::read_to_string(&real).unwrap(), TIDY);
+    assert_eq!(fs::metadata(&real).unwrap().permissions().mode() & 0o7777, 0o640);
+    assert_eq!(names(folder.path()), ["link.rmpl", "real.rmpl"]);
+}
+
 #[test]
 fn a_dash_is_a_filter() {
     let filtered = kirk_with_input(&["fmt", "-"], UNTIDY.as_bytes());

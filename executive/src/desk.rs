@@ -51,7 +51,7 @@ pub(crate) enum Message {
     /// A new plan is ready.
     Rebuilt { from: Time, rebuilt: Rebuilt },
     /// Part of the journal is on the disk, or cannot be brought there.
-    Synced { ticket: Ticket, result: std::io::Result<()> },
+    Synced { ticket: Ticket, result: Result<(), String> },
     /// Somebody wants to know how things are.
     State { reply: Reply<String> },
     /// Somebody wants to look at the mission.
@@ -195,7 +195,7 @@ impl Desk {
         let _ = self.inbox.send(Message::Rebuilt { from, rebuilt });
     }
 
-    pub(crate) fn synced(&self, ticket: Ticket, result: std::io::Result<()>) {
+    pub(crate) fn synced(&self, ticket: Ticket, result: Result<(), String>) {
         let _ = self.inbox.send(Message::Synced { ticket, result });
     }
 

@@ -1,4 +1,4 @@
-//! From a proven plan, or from a journal, to an executive at work.
+//! From a proven plan to an executive at work.
 
 use std::net::TcpListener;
 use std::path::Path;
@@ -6,8 +6,8 @@ use std::sync::mpsc::{Receiver, Sender};
 use std::time::Duration as Real;
 
 use kirk_network::{Duration, Network, Time};
-use kirk_runtime::journal::{Clocks, Journal, Line, Record, Start};
-use kirk_runtime::{Execution, Executive, Handover, Patience, Plan, Settings, Setup, Strategy, recover};
+use kirk_runtime::journal::{Line, Record, Start};
+use kirk_runtime::{Executive, Handover, Patience, Plan, Settings, Setup, Strategy};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use serde_json::value::RawValue;
@@ -125,14 +125,6 @@ pub struct Ready {
     pub(crate) server: Option<crate::http::Server>,
 }
 
-/// What a journal leads to.
-pub enum Resumption {
-    /// The mission goes on.
-    Ready(Box<Ready>),
-    /// The mission is over.
-    Over(Box<Execution>),
-}
-
 /// How late, really, an event may be and still count as executed when it was due, if no tolerance says more. A busy
 /// machine wakes up so late now and then, and no activity cares.
 const LATENESS: Real = Real::from_millis(100);
@@ -167,111 +159,11 @@ pub fn begin(
             let version = env!("CARGO_PKG_VERSION");
             let start = Start::new(&mission.network, &setup, options.speed, clock.anchor(), shell, version);
             let line = Line::new(Time::ZERO, Record::Start(Box::new(start)));
-            Some(JournalFile::create(path, &line)?)
+            Some(JournalFile::create(path, &run, &line)?)
         }
     };
-    make(executive, options, clock, journal, listener, &run, said, false)
-}
-
-/// Goes on with the mission of a journal. Time has passed meanwhile as the clocks of the machine say, or it is `at` now.
-/// `said` hears what commands of the driver print, `note` is told what a person should know.
-///
-/// # Errors
-/// A sentence that says why that is not possible.
-pub fn resume(
-    path: &Path,
-    at: Option<Time>,
-    said: Sender<Said>,
-    mut note: impl FnMut(String),
-) -> Result<Resumption, String> {
-    let (mut file, journal) = JournalFile::open(path)?;
-    if journal.torn > 0 {
-        note(format!("the last record was torn, {} bytes of it; it is left out", journal.torn));
-    }
-    let of_file = |bad| format!("`{}`, {bad}", path.display());
-    let replayed = recover(&journal).map_err(of_file)?;
-    let mut executive = replayed.executive;
-    if executive.is_over() {
-        return Ok(Resumption::Over(Box::new(executive.execution(replayed.at, false))));
-    }
-    let start = &journal.start;
-    let options: Options = serde_json::from_str(start.shell.get())
-        .map_err(|error| format!("`{}` does not say how the mission is executed: {error}", path.display()))?;
-    let listener = open(&options)?;
-    let (mut anchor, mut anchored) = (&start.clocks, Time::ZERO);
-    for line in &journal.lines {
-        if let Record::Resumed { clocks, .. } | Record::Began { clocks } = &line.record {
-            (anchor, anchored) = (clocks, line.time());
-        }
-    }
-    if let Some(clock) = before_zero(&options, &journal, anchor) {
-        if at.is_some_and(|at| at > Time::ZERO) {
-            return Err(format!("`{}` has not begun, so it can be no time in the mission", start.program));
-        }
-        note(format!("`{}` has not begun; it is waited for time zero", start.program));
-        file.push(&Line::new(
-            Time::ZERO,
-            Record::Resumed { clocks: clock.anchor(), unsent: replayed.unsent.clone() },
-        ));
-        executive.handle_resumed(Time::ZERO, &replayed.unsent);
-        let run = start.run.clone();
-        return make(executive, options, clock, Some(file), listener, &run, said, true)
-            .map(|ready| Resumption::Ready(Box::new(ready)));
-    }
-    let clocks = clocks();
-    let rebooted = clocks.rebooted_since(anchor);
-    let passed = clocks.since(anchor).map(|real| (real.as_micros() as f64 * options.speed) as i64);
-    let told = passed.and_then(|passed| anchored.checked_add(Duration::from_micros(passed)));
-    let now = match (at, told) {
-        (Some(at), _) => at,
-        (None, Some(told)) => told,
-        (None, None) => {
-            return Err("the machine was booted again, and its calendar says it is earlier than when the mission was \
-                        interrupted; say what time it is in the mission, in seconds after its start, with `--at`"
-                .to_string());
-        }
-    };
-    if now < replayed.at {
-        return Err(format!(
-            "the mission was executed until {} s, so it cannot be {now} s now; say what time it is in the mission with `--at`",
-            replayed.at
-        ));
-    }
-    note(format!("`{}` goes on at {now} s; the last record is of {} s", start.program, replayed.at));
-    let mut unsent = replayed.unsent;
-    if rebooted {
-        // The records of what left may be lost, not those of what was going to: the driver is asked.
-        unsent.clear();
-        if let Some(due) = replayed.ahead.filter(|&due| due <= now) {
-            file.push(&Line::new(due, Record::Timeout {}));
-            executive.handle_timeout(due);
-            // It may have left already: it is handed over again with all the rest.
-            while executive.poll_output().is_some() {}
-        }
-    }
-    file.push(&Line::new(now, Record::Resumed { clocks, unsent: unsent.clone() }));
-    executive.handle_resumed(now, &unsent);
-    let clock = Clock::starting(now, options.speed);
-    let run = start.run.clone();
-    make(executive, options, clock, Some(file), listener, &run, said, true)
-        .map(|ready| Resumption::Ready(Box::new(ready)))
-}
-
-/// The clock of a mission that was interrupted before it began. `anchor` is what the clocks of the machine said, or will say, at
-/// time zero, as far as the journal knows.
-fn before_zero(options: &Options, journal: &Journal, anchor: &Clocks) -> Option<Clock> {
-    let began = || journal.lines.iter().any(|line| matches!(line.record, Record::Began { .. }));
-    match options.zero {
-        Zero::DriverConfirms { .. } if !began() => Some(Clock::standing(options.speed)),
-        Zero::At(_) if journal.lines.iter().all(|line| line.time() == Time::ZERO) => {
-            let now = clocks();
-            let rebooted = now.rebooted_since(anchor);
-            let left =
-                if rebooted { anchor.calendar - now.calendar } else { anchor.since_boot - now.since_boot };
-            (left > 0).then(|| Clock::starting_in(Real::from_micros(left.unsigned_abs()), options.speed))
-        }
-        _ => None,
-    }
+    let hall = Hall::open(executive.network(), clock, listener)?;
+    make(executive, options, hall, journal, &run, said, false)
 }
 
 /// The clock of a mission that begins.
@@ -316,9 +208,10 @@ impl Ready {
 }
 
 /// Where news is heard, and the word to know.
-type Ear = (TcpListener, Option<Vec<u8>>);
+pub(crate) type Ear = (TcpListener, Option<Vec<u8>>);
 
-fn open(options: &Options) -> Result<Option<Ear>, String> {
+/// Opens the port for news.
+pub(crate) fn open(options: &Options) -> Result<Option<Ear>, String> {
     let Some(http) = &options.http else { return Ok(None) };
     let token = http.token_file.as_ref().map(|file| crate::http::read_token(Path::new(file))).transpose()?;
     let listener = crate::http::listen(&http.bind, http.port, token.is_some())?;
@@ -348,18 +241,40 @@ fn run_id() -> String {
     format!("{:x}-{:x}", clocks().calendar, std::process::id())
 }
 
-#[expect(clippy::too_many_arguments, reason = "the one place where everything meets")]
-fn make(
+/// Where messages come in.
+pub(crate) struct Hall {
+    desk: Desk,
+    inbox: Receiver<Message>,
+    server: Option<crate::http::Server>,
+}
+
+impl Hall {
+    /// From now on news is heard.
+    pub(crate) fn open(network: &Network, clock: Clock, ear: Option<Ear>) -> Result<Hall, String> {
+        let (desk, inbox) = Desk::new(network, clock);
+        let server = match ear {
+            None => None,
+            Some((listener, token)) => {
+                let options = crate::http::ServerOptions { token };
+                let server = crate::http::Server::start(listener, options, desk.clone());
+                Some(server.map_err(|error| format!("the port cannot be served: {error}"))?)
+            }
+        };
+        Ok(Hall { desk, inbox, server })
+    }
+}
+
+/// Starts the driver: everything is there.
+pub(crate) fn make(
     executive: Executive,
     options: Options,
-    clock: Clock,
+    hall: Hall,
     mut journal: Option<JournalFile>,
-    listener: Option<Ear>,
     run: &str,
     said: Sender<Said>,
     resumed: bool,
 ) -> Result<Ready, String> {
-    let (desk, inbox) = Desk::new(executive.network(), clock);
+    let Hall { desk, inbox, server } = hall;
     for event in executive.network().event_ids() {
         if executive.dispatcher().known(event).observed.is_some() {
             desk.set_heard(event);
@@ -376,14 +291,6 @@ fn make(
         Some(driver) => {
             let started = driver.start(treatment, greeting, desk.clone(), said);
             Some(started.map_err(|error| format!("the driver cannot be started: {error}"))?)
-        }
-    };
-    let server = match listener {
-        None => None,
-        Some((listener, token)) => {
-            let options = crate::http::ServerOptions { token };
-            let server = crate::http::Server::start(listener, options, desk.clone());
-            Some(server.map_err(|error| format!("the port cannot be served: {error}"))?)
         }
     };
     Ok(Ready { executive, options, desk, inbox, journal, driver, server })

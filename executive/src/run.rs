@@ -5,9 +5,9 @@
 
 mod zero;
 
-use std::collections::{HashMap, HashSet, VecDeque};
+use std::collections::{BTreeMap, HashMap, HashSet, VecDeque};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
-use std::time::Duration as Real;
+use std::time::{Duration as Real, Instant};
 
 use kirk_network::json::{Seconds, seconds};
 use kirk_network::{Duration, EventId, Time};
@@ -39,6 +39,10 @@ pub struct Ended {
 const AHEAD: Real = Real::from_millis(100);
 /// How many messages are taken before it is looked at what is due.
 const AT_ONCE: usize = 64;
+/// How much longer than an attempt may take we wait to hear how it ended.
+const MARGIN: Real = Real::from_secs(1);
+/// So many warnings of the driver are recorded; one that fails for days does not fill the disk with them.
+const MOST_WARNINGS: u32 = 100;
 /// A machine that slept does not count its sleep as waiting: look at the clock now and then.
 const LONGEST_SLEEP: Real = Real::from_secs(1);
 
@@ -57,9 +61,13 @@ impl Ready {
             ahead_of: None,
             synced: 0,
             outbox: VecDeque::new(),
+            with_driver: BTreeMap::new(),
+            answers_within: Real::from_secs_f64(options.driver_timeout) + MARGIN,
             ignored: HashSet::new(),
+            warnings: 0,
             lateness: Lateness::default(),
             stopped: None,
+            hurried: false,
             lost: None,
             replies: VecDeque::new(),
             waits: None,
@@ -111,10 +119,18 @@ struct Loop {
     synced: Ticket,
     /// What leaves when it is.
     outbox: VecDeque<(Ticket, Sending)>,
+    /// What the driver was told and has not answered: names by dispatch.
+    with_driver: BTreeMap<String, String>,
+    /// How long that can take, really.
+    answers_within: Real,
     /// News of no use that was recorded: by event and reason.
     ignored: HashSet<(String, String)>,
+    /// How many warnings of the driver were recorded.
+    warnings: u32,
     lateness: Lateness,
     stopped: Option<String>,
+    /// Somebody has said twice that it is to stop.
+    hurried: bool,
     /// Why the journal could not be written, if it could not.
     lost: Option<String>,
     /// Who is answered when it is.
@@ -148,10 +164,37 @@ impl Loop {
                 // The loop has a desk itself.
                 Err(RecvTimeoutError::Disconnected) => break,
             }
+            self.check_journal();
+        }
+        if self.stopped.is_some() {
+            self.hear_out(inbox);
         }
         if self.executive.is_over() {
+            // It has come to its end just so.
+            self.stopped = None;
             // A dispatch that could not leave in time ends the mission, and that is to be on record.
             self.perform();
+        }
+    }
+
+    /// The mission was stopped: nothing more leaves, but what the driver is at is waited for, so that what comes of it is on
+    /// record, and whoever goes on does not begin it again.
+    fn hear_out(&mut self, inbox: &Receiver<Message>) {
+        self.outbox.clear();
+        let until = Instant::now() + self.answers_within;
+        if !self.with_driver.is_empty() {
+            let names: Vec<&str> = self.with_driver.values().map(String::as_str).collect();
+            let text = format!(
+                "stopping as soon as the driver has answered for {}; stop again to leave at once",
+                names.join(", ")
+            );
+            self.desk.tell(Happening::Warning { at: at(self.clock.now()), text });
+        }
+        while !self.with_driver.is_empty() && !self.hurried && !self.executive.is_over() {
+            match inbox.recv_timeout(until.saturating_duration_since(Instant::now())) {
+                Ok(message) => self.take(message),
+                Err(_) => break,
+            }
         }
     }
 
@@ -177,19 +220,31 @@ impl Loop {
                 let micros =
                     |ago: f64| self.clock.mission_micros((ago * 1e6) as i64).clamp(0, now.as_micros());
                 let ago = ago.map(|ago| Duration::from_micros(micros(ago)));
-                self.record(now, Record::Executed { id: id.clone(), ago: ago.map(seconds) });
+                self.with_driver.remove(&id);
+                let before = self.executive.version();
                 self.executive.handle_executed(now, &id, ago);
-                self.perform();
-                self.sync();
+                // Said again it is no news.
+                if self.executive.version() != before {
+                    self.record(now, Record::Executed { id, ago: ago.map(seconds) });
+                    self.perform();
+                    self.sync();
+                }
             }
             Message::Failed { id, reason, doubt } => {
-                self.record(now, Record::Failed { id: id.clone(), reason: reason.clone(), doubt });
+                self.with_driver.remove(&id);
+                let before = self.executive.version();
                 self.executive.handle_failed(now, &id, &reason, doubt);
-                self.desk.tell(Happening::Failed { at: at(now), id, reason });
-                self.perform();
+                if self.executive.version() != before {
+                    self.record(now, Record::Failed { id: id.clone(), reason: reason.clone(), doubt });
+                    self.desk.tell(Happening::Failed { at: at(now), id, reason });
+                    self.perform();
+                }
             }
             Message::Warning(text) => {
-                self.record(now, Record::Warning { text: text.clone() });
+                self.warnings += 1;
+                if self.warnings <= MOST_WARNINGS {
+                    self.record(now, Record::Warning { text: text.clone() });
+                }
                 self.desk.tell(Happening::Warning { at: at(now), text });
                 self.perform();
             }
@@ -212,7 +267,7 @@ impl Loop {
                 self.synced = self.synced.max(ticket);
                 self.let_leave();
             }
-            Message::Synced { result: Err(error), .. } => self.lose_journal(&error),
+            Message::Synced { result: Err(lost), .. } => self.lose_journal(lost),
             Message::State { reply } => reply(self.state(now)),
             Message::Look { reply } => {
                 let snapshot = snapshot(&mut self.executive, now, false);
@@ -221,6 +276,7 @@ impl Loop {
                     None => snapshot,
                 });
             }
+            Message::Stop { .. } if self.stopped.is_some() => self.hurried = true,
             Message::Stop { reason } => self.stopped = Some(reason),
         }
         self.plan_anew(now);
@@ -307,6 +363,10 @@ impl Loop {
             }
         }
         self.write();
+        if self.stopped.is_some() {
+            // What has not left is for whoever goes on.
+            sends.clear();
+        }
         let mut new = None;
         for sending in sends {
             let ticket = match self.ahead.get(&sending.id) {
@@ -354,6 +414,7 @@ impl Loop {
         let known = self.begun_by.as_ref() == Some(&id);
         self.desk.tell(Happening::Sent { at: at(now), event, id, due, attempt });
         if let Some(driver) = self.driver.as_ref().filter(|_| !known) {
+            self.with_driver.insert(sending.id.clone(), sending.name.clone());
             driver.send(sending);
         }
     }
@@ -406,8 +467,15 @@ impl Loop {
     }
 
     fn write(&mut self) {
-        if let Some(Err(error)) = self.journal.as_mut().map(JournalFile::write) {
-            self.lose_journal(&error);
+        if let Some(Err(lost)) = self.journal.as_mut().map(JournalFile::write) {
+            self.lose_journal(lost);
+        }
+    }
+
+    /// Somebody may delete it while nothing is written.
+    fn check_journal(&mut self) {
+        if let Some(Err(lost)) = self.journal.as_ref().map(JournalFile::check) {
+            self.lose_journal(lost);
         }
     }
 
@@ -415,23 +483,18 @@ impl Loop {
         self.journal.as_mut().map_or(0, JournalFile::sync)
     }
 
-    /// A mission whose journal cannot be written ends: nothing leaves that is not recorded.
-    fn lose_journal(&mut self, error: &std::io::Error) {
+    /// A mission whose journal is lost ends: nothing leaves that is not recorded.
+    fn lose_journal(&mut self, detail: String) {
         self.journal = None;
         self.outbox.clear();
         self.replies.clear();
-        let detail = format!("the journal cannot be written: {error}");
         self.executive.handle_stopped(self.clock.now(), "journal-failed", &detail);
         self.lost = Some(detail);
     }
 
     fn finish_journal(&mut self) {
-        if self.stopped.is_some() {
-            // What has not left is for whoever resumes.
-            self.outbox.clear();
-        }
-        if let Some(Err(error)) = self.journal.take().map(JournalFile::finish) {
-            self.lose_journal(&error);
+        if let Some(Err(lost)) = self.journal.take().map(JournalFile::finish) {
+            self.lose_journal(lost);
         }
         self.let_leave();
     }

@@ -36,7 +36,9 @@ pub(crate) enum State {
     Done,
 }
 
-/// How long to wait before an order is tried again: twice as long each time, up to a limit.
+/// How long to wait before an order is tried again: twice as long each time, up to a limit; and when it has failed for long,
+/// a hundredth of that time. Whoever has waited for a day can wait for a quarter of an hour more, and what is recorded of a
+/// driver that fails for days stays small: the number of attempts grows with the logarithm of the time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Patience {
     /// After the first attempt.
@@ -54,7 +56,8 @@ impl State {
 impl Order {
     pub(crate) fn failed(&mut self, now: Time, reason: &str, patience: Patience) {
         let doubled = patience.first.as_micros().saturating_mul(1 << (self.attempts - 1).min(30));
-        let wait = doubled.min(patience.most.as_micros());
+        let failing = now.as_micros().saturating_sub(self.first_sent.as_micros());
+        let wait = doubled.min(patience.most.as_micros().max(failing / 100));
         self.reason = reason.to_string();
         self.state = State::Waiting(Time::from_micros(now.as_micros().saturating_add(wait)));
     }

@@ -138,3 +138,38 @@ fn an_attempt_that_fails_is_made_once_more_when_the_window_closes() {
     let row = executive.rows(executive.network().find("drive:start").unwrap());
     assert_eq!(row[0].time.unwrap().0.to_string(), "3");
 }
+
+#[test]
+fn a_driver_that_fails_for_a_day_is_tried_some_hundreds_of_times() {
+    let network = json::read(
+        r#"{"format": "kirk-network/1", "origin": "go", "events": ["go", "a:start", "a:end"],
+            "requirements": [{"from": "go", "to": "a:start", "lower": 0},
+                             {"from": "a:start", "to": "a:end", "lower": 1}]}"#,
+    )
+    .unwrap();
+    let plan = Plan::new(&network).unwrap();
+    let setup = Setup {
+        program: "test".into(),
+        run: "run".into(),
+        settings: Settings::default(),
+        handovers: handovers(plan.network(), None, Scope::Starts),
+        patience: Patience { first: Duration::from_micros(100_000), most: Duration::from_secs(2) },
+    };
+    let mut executive = Executive::new(plan, setup);
+    let (mut now, mut last, mut attempts) = (Time::ZERO, 0, 0);
+    while now < second(24 * 3600) {
+        executive.handle_timeout(now);
+        while let Some(output) = executive.poll_output() {
+            let Output::Send(sending) = output else { continue };
+            attempts += 1;
+            // Never is it waited for longer than 2 s, or a hundredth of the time for which it has failed.
+            let waited = now.as_micros() - last;
+            assert!(waited <= 2_000_000.max(last / 100), "{waited} after {last}");
+            last = now.as_micros();
+            assert!(executive.handle_sent(now, &sending.id));
+            executive.handle_failed(now, &sending.id, "no", false);
+        }
+        now = executive.poll_timeout().unwrap();
+    }
+    assert!((500..1000).contains(&attempts), "{attempts}");
+}

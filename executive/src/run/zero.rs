@@ -32,6 +32,7 @@ impl Loop {
     fn wait_for_hour(&mut self, inbox: &Receiver<Message>) {
         self.waits = Some(Waits::Hour);
         while self.stopped.is_none() && !self.executive.is_over() {
+            self.check_journal();
             let left = self.clock.until_anchor();
             if left.is_zero() {
                 return;
@@ -58,7 +59,9 @@ impl Loop {
         let begun = Instant::now();
         let deadline = begun + Real::from_secs_f64(within);
         let (mut attempts, mut asked, mut again, mut last) = (0, false, begun, String::new());
-        while self.stopped.is_none() && !self.executive.is_over() {
+        // Whoever stops it is still told what became of the attempt that is under way.
+        while !self.executive.is_over() && (self.stopped.is_none() || asked && !self.hurried) {
+            self.check_journal();
             let now = Instant::now();
             if now >= deadline {
                 let last = if last.is_empty() { "it has not answered" } else { &last };

@@ -491,10 +491,15 @@ fn a_mission_that_is_killed_at_every_step_goes_on_and_is_verified() {
     while !std::fs::read(journal).is_ok_and(|bytes| bytes.contains(&b'\n')) {
         std::thread::sleep(Duration::from_millis(1));
     }
-    let mut kills = 0;
+    // What is recorded apart from that it goes on.
+    let records = || lines(Path::new(journal)).iter().filter(|line| !line.contains(r#""resumed""#)).count();
+    let (mut kills, mut patience, mut recorded) = (0, 25, 0);
     let output = loop {
         assert!(begun.elapsed() < Duration::from_secs(120), "{kills} kills and no end");
-        let until = Instant::now() + Duration::from_millis(random.u64(1..25));
+        // A busy machine takes longer to begin than a quiet one to do something.
+        patience = if records() == recorded { patience * 5 / 4 } else { (patience * 4 / 5).max(25) };
+        recorded = records();
+        let until = Instant::now() + Duration::from_millis(random.u64(1..patience));
         let mut ended = false;
         while Instant::now() < until && !ended {
             // Flights and deliveries are over after half a second, four in the mission; that is said until it is heard.
@@ -521,7 +526,7 @@ fn a_mission_that_is_killed_at_every_step_goes_on_and_is_verified() {
         kills += 1;
         mission = start(&["resume", journal, "--format", "json"]);
     };
-    assert!(kills > 100, "only {kills} kills: {}", stderr(&output));
+    assert!(kills > 30, "only {kills} kills: {}", stderr(&output));
     let execution = completed(&output);
     verified(&execution, DELIVERIES);
 
@@ -576,7 +581,7 @@ fn a_torn_record_is_left_out_and_a_damaged_one_is_an_error() {
     // Without its end, and a part of the record before: there is something left to do.
     let end = whole[..whole.len() - 1].iter().rposition(|&byte| byte == b'\n').unwrap();
     std::fs::write(&journal, &whole[..end - 5]).unwrap();
-    let resumed = kirk(&["resume", path, "--format", "json"]);
+    let resumed = kirk(&["resume", path, "--at", "16", "--format", "json"]);
     assert_eq!(completed(&resumed)["rows"].as_array().unwrap().len(), 6);
     assert!(stderr(&resumed).contains("the last record was torn"), "{}", stderr(&resumed));
 

@@ -25,7 +25,7 @@
 //!
 //! # The way through
 //!
-//! [`begin`] and [`resume`] open everything that can fail; [`Ready::run`] is the loop. It sleeps until the next decision or the
+//! [`begin`] and [`resume()`] open everything that can fail; [`Ready::run`] is the loop. It sleeps until the next decision or the
 //! next message, and waits for nothing else: the disk is synced, plans are made, events are driven and news is heard on
 //! other threads, which leave their messages at the [`Desk`].
 //!

@@ -1,9 +1,9 @@
 //! The same network with some bounds at other values: what asks how far a bound can move, or has to.
 //!
 //! A [`Knob`] is one bound, or several that are written once and so move together. Its values are laid on an axis
-//! ([`axis`]) on which larger is easier for us, whatever the bound: a later deadline, a smaller least duration, less
+//! (`axis`) on which larger is easier for us, whatever the bound: a later deadline, a smaller least duration, less
 //! uncertainty, sooner news. Nature having fewer choices, or we having more, never turns a "yes" into a "no": along
-//! the axis the verdict changes once, from "no" to "yes", and [`Probe`] finds where.
+//! the axis the verdict changes once, from "no" to "yes", and `Probe` finds where.
 //!
 //! There are two exceptions. A requirement that is exactly [0, 0] makes two events one, which is another model and may
 //! be an easier one. And where news of the first event of a chain is late, [`reduce`](mod@crate::reduce) may say "no" too

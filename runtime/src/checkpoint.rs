@@ -14,7 +14,7 @@ use crate::execution::How;
 use crate::knowledge::Known;
 use crate::order::{Order, State};
 
-/// What has become known since the last checkpoint; several of them, one [followed](Checkpoint::followed_by) by the other, are
+/// What has become known since the last checkpoint; several of them, one followed by the other, are
 /// all that is known. Events go by name, times are microseconds after the origin.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

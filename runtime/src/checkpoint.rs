@@ -19,8 +19,6 @@ use crate::order::{Order, State};
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Checkpoint {
-    /// The last time at which anything was done.
-    pub(crate) now: i64,
     /// How often anything has happened to the dispatcher, and to the executive besides.
     pub(crate) versions: (u64, u64),
     /// What is known of events.

@@ -75,9 +75,10 @@ impl Dispatcher {
         Rebuild::new(network, Time::from_micros(from), known, self.version)
     }
 
-    /// The events of which something has become known since the last checkpoint, and the time now.
-    pub(crate) fn checkpoint(&mut self) -> (Vec<EventId>, Time) {
-        (self.knowledge.take_touched(), Time::from_micros(self.now))
+    /// The events of which something has become known since the last checkpoint. The time is not among what is known: it
+    /// passes without a record, and the first thing done with a plan has its own.
+    pub(crate) fn checkpoint(&mut self) -> Vec<EventId> {
+        self.knowledge.take_touched()
     }
 
     /// Goes on from what is known, with the plan that was made of it at some time; `None` if there is none.
@@ -85,7 +86,7 @@ impl Dispatcher {
         network: &Arc<Network>,
         settings: Settings,
         mut knowledge: Knowledge,
-        (now, version): (Time, u64),
+        version: u64,
         planned: Time,
     ) -> Option<Dispatcher> {
         let known = knowledge.progress(network);
@@ -93,7 +94,6 @@ impl Dispatcher {
         let (reduction, net) = rebuilt.plan?;
         let plan = Plan { network: Arc::clone(network), reduction, net };
         let mut dispatcher = Dispatcher::following(plan, settings, knowledge);
-        dispatcher.now = now.as_micros();
         dispatcher.version = version;
         dispatcher.take_up(planned.as_micros());
         Some(dispatcher)

@@ -15,14 +15,13 @@ use crate::replay::names;
 impl Executive {
     /// What has become known since the last checkpoint. Nothing may be in flight.
     pub(super) fn checkpoint(&mut self) -> Checkpoint {
-        let (touched, now) = self.dispatcher.checkpoint();
+        let touched = self.dispatcher.checkpoint();
         let name = |event: EventId| self.dispatcher.network().id(event).to_string();
         let timed = |list: &[(Time, EventId)]| {
             list.iter().map(|&(time, event)| (time.as_micros(), name(event))).collect::<Vec<_>>()
         };
         let changed = self.orders.iter().enumerate().filter(|(_, order)| !order.kept);
         let checkpoint = Checkpoint {
-            now: now.as_micros(),
             versions: (self.dispatcher.version(), self.changes),
             events: touched.iter().map(|&event| (name(event), self.dispatcher.known(event).into())).collect(),
             orders: changed.map(|(at, order)| (at as u32, order.into())).collect(),
@@ -59,8 +58,7 @@ impl Executive {
             knowledge.recall(find(name)?, Known::from(event));
         }
         let settings = setup.settings_for(network);
-        let state = (Time::from_micros(known.now), known.versions.0);
-        let dispatcher = Dispatcher::restored(network, settings, knowledge, state, planned)
+        let dispatcher = Dispatcher::restored(network, settings, knowledge, known.versions.0, planned)
             .ok_or("there is no plan with what is known here")?;
         let mut executive = Executive::around(dispatcher, setup);
         executive.changes = known.versions.1;

@@ -52,7 +52,7 @@ fn journal(events: u32) -> Vec<String> {
     let patience = Patience { first: Duration::from_secs(1), most: Duration::from_secs(1) };
     let settings = Settings::default();
     let (program, run) = ("resume".to_string(), "run".to_string());
-    let setup = Setup { program, run, settings, handovers: Vec::new(), patience };
+    let setup = Setup { program, run, settings, handovers: Vec::new(), driver: false, patience };
     let shell = RawValue::from_string("null".to_string()).unwrap();
     let clocks = Clocks { boot: None, since_boot: 0, calendar: 0 };
     let start = Record::Start(Box::new(Start::new(&network, &setup, 1.0, clocks, shell, "bench")));
@@ -70,7 +70,7 @@ fn journal(events: u32) -> Vec<String> {
     let mut now = Time::ZERO;
     while !executive.is_over() {
         while let Some(output) = executive.poll_output() {
-            if let Output::Fixed(event) = output
+            if let Output::Fixed { event, .. } = output
                 && merged.link_of(event).is_none()
             {
                 let at = executive.dispatcher().known(event).fixed.unwrap().0;

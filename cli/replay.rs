@@ -37,7 +37,7 @@ pub(crate) fn replay(arguments: &Replay, common: &Common) -> io::Result<Status> 
         std::thread::sleep(Real::from_micros(wait as u64));
         shown_until = shown_until.max(at);
         match output {
-            Output::Fixed(event) if !common.quiet => {
+            Output::Fixed { event, .. } if !common.quiet => {
                 for row in executive.rows(*event) {
                     let [time, event, how] = cells(&row);
                     remark(&format!("{time:>10}  {event}  {how}"));

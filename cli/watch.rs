@@ -83,7 +83,12 @@ fn lines(happening: &Happening) -> Vec<String> {
             let event = id.split_once('/').map_or(id.as_str(), |(_, event)| event);
             vec![format!("{:>10}  {}  not confirmed: {}", at.0, one_line(event), one_line(reason))]
         }
-        Happening::Warning { at, text } => vec![format!("{:>10}  {}", at.0, one_line(text))],
+        Happening::Ignored { at, event, why } => {
+            vec![format!("{:>10}  {}  ignored: {}", at.0, one_line(event), one_line(why))]
+        }
+        Happening::Warning { at, text } | Happening::Note { at, text } => {
+            vec![format!("{:>10}  {}", at.0, one_line(text))]
+        }
     }
 }
 

@@ -618,7 +618,7 @@ fn windows_that_were_missed_while_nobody_was_there_are_reported() {
     let execution: Value = serde_json::from_str(&stdout(&output)).unwrap();
     assert_eq!(execution["failure"]["reason"], "missed-window");
     assert!(
-        execution["failure"]["detail"].as_str().unwrap().contains("until 20 at the latest"),
+        execution["failure"]["detail"].as_str().unwrap().contains("until 20 s at the latest"),
         "{execution}"
     );
     let before = kirk(&["resume", path, "--at", "1"]);

@@ -75,6 +75,20 @@ fn before_time_zero_nothing_has_happened_and_nothing_is_heard() {
     assert_eq!((&end["time"], &end["how"]), (&json!(60), &json!("imagined")));
 }
 
+#[test]
+fn of_news_of_no_use_the_operator_is_told_once_and_why() {
+    let running = Running::start(&["run", "tests/live/field.rmpl", "--speed", "20"]);
+    let mut stream = connect(running.address);
+    for body in [&br#"{"event-ids": ["lunch:end"]}"#[..], br#"{"event-ids": ["lunch:end", "+FLY::START+"]}"#]
+    {
+        ask(&mut stream, "POST /", body).unwrap();
+    }
+    let said: Vec<String> = running.said.iter().collect();
+    let told = |text: &str| said.iter().filter(|line| line.contains(text)).count();
+    assert_eq!(told("lunch:end  ignored: there is no such event in this mission"), 1, "{said:#?}");
+    assert_eq!(told("+FLY::START+  ignored: it is not Nature's to decide"), 1, "{said:#?}");
+}
+
 /// Sends a request on a connection that stays open, and returns the status and the body of the answer.
 fn ask(stream: &mut BufReader<TcpStream>, request: &str, body: &[u8]) -> std::io::Result<(u16, String)> {
     let head = format!("{request} HTTP/1.1\r\nHost: localhost\r\nContent-Length: {}\r\n\r\n", body.len());

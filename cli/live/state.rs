@@ -94,15 +94,21 @@ impl State {
 
     /// Notes what happened, if it does not show in the timetable.
     pub(crate) fn note(&mut self, happening: &Happening) {
+        let mut tone = Tone::Warning;
         let (at, text) = match happening {
             Happening::Failed { at, id, reason } => {
                 let name = id.split_once('/').map_or(id.as_str(), |(_, name)| name);
                 (at, format!("the driver failed: {name}: {reason}"))
             }
             Happening::Warning { at, text } => (at, text.clone()),
+            Happening::Note { at, text } => {
+                tone = Tone::Answer;
+                (at, text.clone())
+            }
+            Happening::Ignored { at, event, why } => (at, format!("not heard: {event}: {why}")),
             Happening::Sent { .. } | Happening::Fixed { .. } | Happening::Over { .. } => return,
         };
-        self.say(Time::from_micros(at.0.as_micros()), Tone::Warning, text);
+        self.say(Time::from_micros(at.0.as_micros()), tone, text);
     }
 
     /// Notes what became of a key that was pressed.

@@ -3,13 +3,14 @@
 //! What is certainly of no use (unknown events, events of ours, repeated news) is answered here, without a word to the
 //! loop, so no flood of it can delay a dispatch.
 
-use std::collections::HashMap;
-use std::sync::Arc;
+use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
 
+use kirk_network::json::seconds;
 use kirk_network::model::normal_name;
-use kirk_network::{EventId, Network, Time};
+use kirk_network::{Duration, EventId, Network, Time};
 use kirk_runtime::Rebuilt;
 use serde::Serialize;
 use tokio::sync::broadcast;
@@ -35,6 +36,8 @@ struct Shared {
     /// For each event: its news was accepted.
     heard: Vec<AtomicBool>,
     version: AtomicU64,
+    /// What was told of news of no use: each event and reason once.
+    ignored: Mutex<HashSet<(String, String)>>,
     happenings: broadcast::Sender<Arc<Happening>>,
 }
 
@@ -103,6 +106,8 @@ impl Failed {
 
 /// How many messages may wait, and how many happenings a slow listener may be behind.
 const WAITING: usize = 4096;
+/// Of so much news of no use people are told; whoever makes names up does not fill a terminal with them.
+const MOST_IGNORED: usize = 1000;
 
 impl Desk {
     pub(crate) fn new(network: &Network, clock: Clock) -> (Desk, Receiver<Message>) {
@@ -114,6 +119,7 @@ impl Desk {
             contingent: network.event_ids().map(|event| network.link_of(event).is_some()).collect(),
             heard: network.event_ids().map(|_| AtomicBool::new(false)).collect(),
             version: AtomicU64::new(0),
+            ignored: Mutex::new(HashSet::new()),
             happenings: broadcast::channel(WAITING).0,
         };
         (Desk { inbox, clock, shared: Arc::new(shared) }, outbox)
@@ -151,6 +157,25 @@ impl Desk {
         }
         // If the loop is gone nobody is there to answer; whoever waits notices that the reply was dropped.
         let _ = self.inbox.send(Message::News { arrived, events, answer, reply });
+    }
+
+    /// The same for news from elsewhere: whoever watches the mission does not see the answer, so of what is of no use they are
+    /// told, of each event and reason once.
+    pub(crate) fn report(&self, names: Vec<String>, reply: Reply<AnswerNews>) {
+        let (desk, arrived) = (self.clone(), self.clock.now());
+        let tell = move |answer: AnswerNews| {
+            answer.ignored.iter().for_each(|ignored| desk.tell_ignored(arrived, ignored));
+            reply(answer);
+        };
+        self.news(names, Box::new(tell));
+    }
+
+    fn tell_ignored(&self, arrived: Time, Ignored { event, why }: &Ignored) {
+        let mut told = self.shared.ignored.lock().unwrap_or_else(PoisonError::into_inner);
+        if told.len() < MOST_IGNORED && told.insert((normal_name(event), why.clone())) {
+            let at = seconds(Duration::from_micros(arrived.as_micros()));
+            self.tell(Happening::Ignored { at, event: event.clone(), why: why.clone() });
+        }
     }
 
     /// The execution as it stands, as `kirk-execution/1` in one line of JSON.

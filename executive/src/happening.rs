@@ -37,12 +37,28 @@ pub enum Happening {
         /// Why.
         reason: String,
     },
-    /// Something a person should know.
+    /// Something a person should know: not all is as it should be.
     Warning {
         /// When, in seconds after the start.
         at: Seconds,
         /// A sentence.
         text: String,
+    },
+    /// Something a person may want to know: how news was taken.
+    Note {
+        /// When, in seconds after the start.
+        at: Seconds,
+        /// A sentence.
+        text: String,
+    },
+    /// News was of no use. The same is told once.
+    Ignored {
+        /// When it arrived, in seconds after the start.
+        at: Seconds,
+        /// The event, as it was called.
+        event: String,
+        /// Why.
+        why: String,
     },
     /// The mission is over.
     Over {

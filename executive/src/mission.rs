@@ -231,7 +231,8 @@ fn setup(mission: &Mission, options: &Options) -> Setup {
         program: mission.program.clone(),
         run: run_id(),
         settings,
-        handovers: if options.driver.is_some() { mission.handovers.clone() } else { Vec::new() },
+        handovers: mission.handovers.clone(),
+        driver: options.driver.is_some(),
         patience: Patience { first: scaled(PATIENCE.0), most: scaled(PATIENCE.1) },
     }
 }

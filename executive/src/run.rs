@@ -12,7 +12,7 @@ use std::time::{Duration as Real, Instant};
 use kirk_network::json::{Seconds, seconds};
 use kirk_network::{Duration, EventId, Time};
 use kirk_runtime::journal::{Line, Record};
-use kirk_runtime::{Answer, Execution, Executive, How, Output, Replanned, Sending};
+use kirk_runtime::{Answer, Execution, Executive, Output, Replanned, Sending};
 
 use crate::clock::Clock;
 use crate::desk::{AnswerNews, Desk, Ignored, Message, Reply};
@@ -342,10 +342,9 @@ impl Loop {
                     self.record(now, Record::Dispatch { id, due, attempt });
                     sends.push(sending);
                 }
-                Output::Fixed(event) => {
-                    let known = *self.executive.dispatcher().known(event);
-                    if let (Some((time, How::Dispatched)), None) = (known.fixed, &self.driver) {
-                        self.lateness.add(now, time);
+                Output::Fixed { event, due } => {
+                    if let (Some(due), None) = (due, &self.driver) {
+                        self.lateness.add(now, due);
                     }
                     let rows = self.executive.rows(event);
                     if !rows.is_empty() {
@@ -356,6 +355,7 @@ impl Loop {
                     self.record(now, Record::Warning { text: text.clone() });
                     self.desk.tell(Happening::Warning { at: at(now), text });
                 }
+                Output::Note(text) => self.desk.tell(Happening::Note { at: at(now), text }),
                 Output::Over => {
                     let execution = self.executive.execution(now, false);
                     self.record(now, Record::End { execution });

@@ -117,12 +117,12 @@ mod tests {
 
     fn executive(text: &str, driver: bool) -> Executive {
         let plan = Plan::new(&json::read(text).unwrap()).unwrap();
-        let handovers = if driver { handovers(plan.network(), None, Scope::Starts) } else { Vec::new() };
+        let handovers = handovers(plan.network(), None, Scope::Starts);
         let second = Duration::from_secs(1);
         let patience = Patience { first: second, most: second };
         let settings = Settings { lateness: Duration::from_secs(5), ..Settings::default() };
         let (program, run) = ("mission".to_string(), "run".to_string());
-        Executive::new(plan, Setup { program, run, settings, handovers, patience })
+        Executive::new(plan, Setup { program, run, settings, handovers, driver, patience })
     }
 
     fn second(seconds: i64) -> Time {

@@ -15,7 +15,8 @@ use std::collections::VecDeque;
 
 use crate::controllability::{Solution, Wait, solve};
 use crate::hierarchy::{Hierarchy, Path};
-use crate::stnu::{Edge, Link, Rows, Stnu, TooLarge};
+use crate::precedence;
+use crate::stnu::{Edge, Link, NONE, Rows, Stnu, TooLarge};
 use implied::implied_by_links;
 pub(crate) use rigid::Rigid;
 
@@ -36,6 +37,9 @@ pub struct Dispatchable {
     pub waits: Vec<Wait>,
     /// For each node the node at whose time it is always executed, and after which; [`crate::stnu::NONE`] for most.
     pub simultaneous: Vec<u32>,
+    /// Pairs (later, earlier), where no edge holds the later one: as it is written it must not come before the other, so it is
+    /// not begun before the other is done, even where their times may be equal or keep them apart.
+    pub follows: Vec<(u32, u32)>,
 }
 
 impl Dispatchable {
@@ -55,7 +59,9 @@ impl Dispatchable {
 /// [`TooLarge`] if the durations add up to more than 64-bit microseconds can hold.
 pub fn dispatchable(stnu: &Stnu) -> Result<Option<Dispatchable>, TooLarge> {
     let Some(Consequences { mut edges, waits, potential }) = consequences(stnu)? else { return Ok(None) };
-    let rigid = Rigid::new(stnu, &edges, &potential);
+    let written = precedence::written(stnu);
+    let rank = precedence::ranks(stnu.nodes, &written, |node| node);
+    let rigid = Rigid::new(stnu, &edges, &potential, &rank);
     // What Nature keeps by herself helps to make other edges needless, and is needless itself.
     let nature = rigid.contracted(&nature_keeps(stnu));
     edges.extend(nature_keeps(stnu));
@@ -72,8 +78,57 @@ pub fn dispatchable(stnu: &Stnu) -> Result<Option<Dispatchable>, TooLarge> {
         rigid.leads(wait.waiter) && !comes_after
     };
     let waits = waits.into_iter().filter(needed).collect();
-    let simultaneous = rigid.simultaneous();
-    Ok(Some(Dispatchable { nodes: stnu.nodes, links: stnu.links.clone(), edges: kept, waits, simultaneous }))
+    let mut net = Dispatchable {
+        nodes: stnu.nodes,
+        links: stnu.links.clone(),
+        edges: kept,
+        waits,
+        simultaneous: rigid.simultaneous(),
+        follows: Vec::new(),
+    };
+    net.follows = follows(&net, written, &rank);
+    Ok(Some(net))
+}
+
+/// Of all that is written to follow, what no edge holds. Nature cannot be held: what follows an event of hers follows what
+/// should have come before that too.
+///
+/// Nothing waits for itself in the end: round a cycle of holds the distances add up to 0 at most, so they are 0 and all its
+/// nodes simultaneous; and among those the leader is of the least rank, and ranks order what is written.
+fn follows(net: &Dispatchable, mut written: Vec<(u32, u32)>, rank: &[u32]) -> Vec<(u32, u32)> {
+    let mut activation = vec![NONE; net.nodes as usize];
+    net.links.iter().for_each(|link| activation[link.contingent as usize] = link.activation);
+    let natures = |node: u32| activation[node as usize] != NONE;
+    let held = |later: u32, earlier: u32| {
+        let known = net.edges.binary_search_by_key(&(later, earlier), |edge| (edge.from, edge.to));
+        known.is_ok_and(|at| net.holds(&net.edges[at]))
+    };
+    written.retain(|&(later, earlier)| {
+        // What is time zero by definition has not to be waited for.
+        let [later, earlier] = [later, earlier].map(|node| rank[node as usize]);
+        later > earlier && earlier != rank[0]
+    });
+    written.sort_unstable_by_key(|&(later, earlier)| (rank[later as usize], later, earlier));
+    written.dedup();
+    // What follows an event follows all that are one moment with it.
+    let moments = Rows::new(net.nodes, rank.iter().copied());
+    let mut follows: Vec<(u32, u32)> = Vec::new();
+    // For each event of Nature's what should have come before; her own beginning has in any case.
+    let mut behind: Vec<Vec<u32>> = vec![Vec::new(); net.nodes as usize];
+    for (later, earlier) in written {
+        let moment = moments.of(rank[earlier as usize]).iter();
+        let before: Vec<u32> =
+            moment.flat_map(|&at| behind[at as usize].iter().copied().chain([at])).collect();
+        if natures(later) {
+            let ours = before.into_iter().filter(|&at| !natures(at) && at != activation[later as usize]);
+            behind[later as usize].extend(ours);
+        } else {
+            follows.extend(before.into_iter().filter(|&at| !held(later, at)).map(|at| (later, at)));
+        }
+    }
+    follows.sort_unstable();
+    follows.dedup();
+    follows
 }
 
 /// All that follows from a controllable network, with what is in it: nothing else is to be kept in an execution.

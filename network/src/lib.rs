@@ -74,6 +74,7 @@ pub mod merge;
 pub mod model;
 pub mod news;
 pub mod plain;
+pub mod precedence;
 pub mod promise;
 pub mod punctual;
 mod radix;

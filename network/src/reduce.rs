@@ -96,7 +96,8 @@ pub fn reduce(network: &Network) -> Result<Reduction, ReduceError> {
     Reducer::new(network, None)?.reduce()
 }
 
-/// Reduces what is left of an execution: everything known is placed at the origin, nothing else happens before `now`.
+/// Reduces what is left of an execution: everything known is placed at the origin, nothing else happens before `now`. What is
+/// known only roughly is placed where news still to come, of an event at a fixed distance, tells of it more exactly.
 pub fn reduce_rest(network: &Network, progress: &Progress) -> Result<Reduction, ReduceError> {
     Reducer::new(network, Some(progress))?.reduce()
 }
@@ -196,7 +197,7 @@ impl<'a> Reducer<'a> {
     }
 
     fn reduce(mut self) -> Result<Reduction, ReduceError> {
-        self.place_known_and_executable();
+        self.place_known_and_executable()?;
         for at in 0..self.trees.parents_first.len() {
             let event = self.trees.parents_first[at];
             if self.places[event.index()].is_none() {
@@ -210,13 +211,14 @@ impl<'a> Reducer<'a> {
         Ok(Reduction { stnu, event_of: self.event_of, places, sources })
     }
 
-    fn place_known_and_executable(&mut self) {
+    fn place_known_and_executable(&mut self) -> Result<(), TooLarge> {
         let origin = self.network.origin();
         self.event_of.push(origin);
+        let told_later = self.told_later()?;
         for event in self.network.event_ids() {
-            let known = self.progress.and_then(|progress| progress.known[event.index()]);
-            let (node, earliest, latest) = match known {
-                Some((earliest, latest)) => (0, earliest.as_micros(), latest.as_micros()),
+            let (node, earliest, latest) = match self.known(event) {
+                Some(_) if told_later[event.index()] => continue,
+                Some((earliest, latest)) => (0, earliest, latest),
                 None if event == origin => (0, 0, 0),
                 None if self.network.link_of(event).is_some() => continue,
                 None => {
@@ -228,14 +230,40 @@ impl<'a> Reducer<'a> {
                 Place { node, earliest, latest, heard_by: None, root: event, base: event, inexact: false };
             self.places[event.index()] = Some(place);
         }
+        Ok(())
+    }
+
+    /// The interval in which an event happened, if anything is known of it.
+    fn known(&self, event: EventId) -> Option<(i64, i64)> {
+        let (earliest, latest) = self.progress?.known[event.index()]?;
+        Some((earliest.as_micros(), latest.as_micros()))
+    }
+
+    /// For each event: it has happened, but news that is still to come, of its group, says more exactly when.
+    fn told_later(&self) -> Result<Vec<bool>, TooLarge> {
+        let mut later = vec![false; self.network.events().len()];
+        for &event in &self.trees.parents_first {
+            let Some((earliest, latest)) = self.known(event) else { continue };
+            if earliest == latest || later[event.index()] {
+                continue;
+            }
+            let group = self.trees.twins_of(self.network, event);
+            let Some(news) = self.best_news(&group)? else { continue };
+            let to_come = add(earliest, news.max)?.max(self.now()) < add(latest, news.min)?;
+            if to_come && self.known(news.of).is_none() && latest - earliest > news.max - news.min {
+                group.into_iter().for_each(|(member, _)| later[member.index()] = true);
+            }
+        }
+        Ok(later)
     }
 
     /// Places a contingent event whose parent is placed, with all that follow it at a fixed distance.
     fn place_group(&mut self, root: EventId) -> Result<(), TooLarge> {
         let group = self.trees.twins_of(self.network, root);
-        let parent = self.link(root).from;
+        let known = self.known(root);
+        let parent = if known.is_some() { self.network.origin() } else { self.link(root).from };
         let mut base = parent;
-        let (mut lower, mut upper) = self.window(root, base)?;
+        let (mut lower, mut upper) = known.map_or_else(|| self.window(root, base), Ok)?;
         let mut inexact = self.place(parent).is_heard_late() || self.place(parent).inexact;
         // A single value, or news that may be equally late whatever happened, tells nothing.
         let news = self.best_news(&group)?.filter(|news| upper - lower > news.max - news.min);

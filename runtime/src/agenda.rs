@@ -68,15 +68,26 @@ impl Agenda {
         for wait in &net.waits {
             nodes[wait.waiter as usize].held_by += 1;
         }
+        // What follows at no distance is held like what follows at one.
+        let follows = net.follows.iter().map(|&(from, to)| Edge { from, to, weight: 0 });
+        let edges: Vec<Edge> = net.edges.iter().copied().chain(follows).collect();
+        for &(later, _) in &net.follows {
+            nodes[later as usize].held_by += 1;
+        }
         let mut ending = vec![NONE; count];
         for (index, link) in net.links.iter().enumerate() {
             ending[link.contingent as usize] = index as u32;
         }
         let mut agenda = Agenda {
-            outgoing: Rows::new(net.nodes, net.edges.iter().map(|edge| edge.from)),
-            incoming: Rows::new(net.nodes, net.edges.iter().map(|edge| edge.to)),
-            edges: net.edges.clone(),
-            holds: net.edges.iter().map(|edge| net.holds(edge)).collect(),
+            outgoing: Rows::new(net.nodes, edges.iter().map(|edge| edge.from)),
+            incoming: Rows::new(net.nodes, edges.iter().map(|edge| edge.to)),
+            holds: net
+                .edges
+                .iter()
+                .map(|edge| net.holds(edge))
+                .chain(net.follows.iter().map(|_| true))
+                .collect(),
+            edges,
             starting: Rows::new(net.nodes, net.links.iter().map(|link| link.activation)),
             waits_for: Rows::new(net.links.len() as u32, net.waits.iter().map(|wait| wait.link)),
             waits_of: Rows::new(net.nodes, net.waits.iter().map(|wait| wait.waiter)),

@@ -4,13 +4,16 @@
 //! the time of [`Dispatcher::poll_timeout`] has come (earlier or again is harmless), each with the present time, which
 //! never goes back; then take what is to be done from [`Dispatcher::poll_dispatch`].
 //!
-//! Events that somebody else executes (a driver) are *in flight* from their dispatch until
+//! Events that a driver carries out are *in flight* from their dispatch until
 //! [`Dispatcher::handle_executed`] confirms them: what must follow them waits for that.
 //!
 //! Real clocks are late. An event executed no later than [`Settings::lateness`] after it was due is recorded at the time
 //! it was due, so that lateness does not add up through the plan (N. Muscettola, P. Morris, B. Pell, B. Smith, *Issues in
 //! temporal reasoning for autonomous control systems*, 1998, section 3); one that is later is recorded as late as it is,
-//! if its window allows.
+//! if its window allows. An event that nobody has to execute (the end of a pause, the join of two branches) happens when it is
+//! due by definition, however late we look at the clock, and so do the moments at which buffered news is released and missing
+//! news is imagined. Executing at such times afterwards comes to what a clock that is never late would have led to: each was the
+//! earliest at which the event could be executed, whatever was executed since.
 //!
 //! News is mapped as in sections 5.2.2 and appendix C of the thesis. News within the window of the plan is taken at
 //! once. Early news is *buffered* to the start of the window, missing news is *imagined* at its end. With
@@ -19,11 +22,13 @@
 //! its time elsewhere. The buffering execution satisfies the new plan too, so there always is one; it only adds freedom,
 //! and until it is there the old plan stands.
 
+mod flight;
 mod replan;
 
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+use flight::InFlight;
 use kirk_network::reduce::Reduction;
 use kirk_network::stnu::{Link, Rows};
 use kirk_network::{Dispatchable, Duration, EventId, Network, Time};
@@ -31,7 +36,7 @@ pub use replan::Adoption;
 
 use crate::agenda::Agenda;
 use crate::execution::How;
-use crate::knowledge::{Knowledge, Known, heard_now};
+use crate::knowledge::{Knowledge, Known, heard_against, heard_now};
 use crate::measured::Measured;
 use crate::plan::Plan;
 
@@ -50,8 +55,10 @@ pub enum Strategy {
 pub struct Settings {
     /// What to do with news that says more than the plan assumed.
     pub strategy: Strategy,
-    /// The executable events that count as executed only when [`Dispatcher::handle_executed`] says so.
-    pub confirmed: Vec<EventId>,
+    /// The executable events that somebody carries out, at the earliest when told. All others happen when they are due.
+    pub carried_out: Vec<EventId>,
+    /// Those count as executed only when [`Dispatcher::handle_executed`] says so.
+    pub confirmed: bool,
     /// How long before they are due those are dispatched.
     pub lead: Duration,
     /// Up to how late an event is recorded as executed when it was due.
@@ -59,6 +66,11 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// How long before it is due an event is dispatched.
+    fn lead_of(&self, carried_out: bool) -> i64 {
+        if carried_out && self.confirmed { self.lead.as_micros() } else { 0 }
+    }
+
     /// Nothing is ever late, and every dispatch is its own execution.
     pub fn of(strategy: Strategy) -> Settings {
         Settings { strategy, ..Settings::default() }
@@ -72,16 +84,6 @@ pub struct Dispatch {
     pub event: EventId,
     /// When it is due.
     pub time: Time,
-}
-
-/// A dispatched event that nobody has confirmed yet.
-#[derive(Clone, Copy, Debug)]
-struct InFlight {
-    event: EventId,
-    node: u32,
-    due: i64,
-    /// Since when it is, if it was confirmed before it is due: until then news may still bring it forward.
-    executed: Option<i64>,
 }
 
 /// What was done with news.
@@ -109,6 +111,8 @@ pub struct Missed {
     pub event: EventId,
     /// When it would have been executed.
     pub time: Time,
+    /// When it was due.
+    pub due: Time,
     /// The latest time at which it could be.
     pub latest: Time,
 }
@@ -118,8 +122,8 @@ pub struct Missed {
 pub struct Dispatcher {
     network: Arc<Network>,
     settings: Settings,
-    /// For each event: is it to be confirmed?
-    confirmed: Vec<bool>,
+    /// For each event: does somebody carry it out?
+    carried_out: Vec<bool>,
     reduction: Reduction,
     agenda: Agenda,
     /// The links that have started and whose contingent node has not happened: (window start, window end, link).
@@ -159,14 +163,14 @@ impl Dispatcher {
     /// Nothing of the plan is executed yet, not even its origin.
     fn following(plan: Plan, settings: Settings, knowledge: Knowledge) -> Dispatcher {
         let Plan { network, reduction, net } = plan;
-        let mut confirmed = vec![false; network.events().len()];
-        for event in &settings.confirmed {
-            confirmed[event.index()] = true;
+        let mut carried_out = vec![false; network.events().len()];
+        for event in &settings.carried_out {
+            carried_out[event.index()] = true;
         }
         Dispatcher {
-            agenda: agenda(&reduction, &net, &confirmed, settings.lead),
+            agenda: agenda(&reduction, &net, |event| settings.lead_of(carried_out[event.index()])),
             settings,
-            confirmed,
+            carried_out,
             reduction,
             active: Vec::new(),
             knowledge,
@@ -221,7 +225,9 @@ impl Dispatcher {
         let heard = if nearest.abs_diff(arrived) <= slack.unsigned_abs() { nearest } else { arrived };
         let evidence = heard_now(&link, heard);
         if before.0.max(evidence.0) > before.1.min(evidence.1) || before.0 > heard {
-            let latest = latest.map(Time::from_micros);
+            // Who was told when it was to come, and that it has not, is told the same again.
+            let by_model = self.knowledge.news_by(&self.network, event).filter(|by| by.as_micros() < arrived);
+            let latest = by_model.or(latest.map(Time::from_micros));
             return Reception::Impossible { earliest: Some(Time::from_micros(earliest)), latest };
         }
         self.version += 1;
@@ -242,14 +248,17 @@ impl Dispatcher {
         Reception::Accepted
     }
 
-    /// Takes news, arrived at a time, that the model rules out: the event happened when its delay says, whatever its link
-    /// says. It has to be planned anew with that, and until there is an answer nothing is done. An event whose activation
-    /// has not happened is not taken. Nothing may be in flight.
+    /// Takes news, arrived at a time, that the model rules out: the event happened when its delay or its link says, one of
+    /// which is wrong. It has to be planned anew with that, and until there is an answer nothing is done. An event whose
+    /// activation has not happened is not taken. Nothing may be in flight.
     pub fn handle_impossible(&mut self, arrived: Time, event: EventId) {
         let arrived = arrived.as_micros();
         self.now = self.now.max(arrived);
-        let (Some(link), Some(_)) = (self.network.link_of(event), self.happened(event)) else { return };
-        let evidence = heard_now(&self.network.contingents()[link], arrived);
+        let Some(link) = self.network.link_of(event).map(|link| self.network.contingents()[link]) else {
+            return;
+        };
+        let Some(activation) = self.happened(link.from) else { return };
+        let evidence = heard_against(&link, activation, arrived);
         self.version += 1;
         self.knowledge.hear(event, arrived);
         self.knowledge.overrule(event, evidence);
@@ -262,10 +271,8 @@ impl Dispatcher {
         while self.missed.is_none() && !self.broken {
             let link = self.next_link().filter(|&(time, ..)| time <= self.now);
             let early = self.next_early().filter(|&(time, _)| time <= self.now);
-            let event = self.agenda.next().filter(|&(action, _)| action <= self.now).map(|(_, node)| {
-                let due = self.agenda.due(node);
-                (self.recorded(due, self.now, self.agenda.upper(node)), node)
-            });
+            let event = self.agenda.next().filter(|&(action, _)| action <= self.now);
+            let event = event.map(|(_, node)| (self.executed_at(node), node));
             // At one time Nature comes first, so that we act on all there is to know.
             let first = early.map(|(time, _)| time).into_iter().chain(event.map(|(time, _)| time)).min();
             match (link, early, event) {
@@ -273,63 +280,14 @@ impl Dispatcher {
                     self.happen(node, time, how);
                 }
                 (_, Some((time, at)), _) if Some(time) == first => {
-                    let InFlight { event, node, .. } = self.in_flight.remove(at);
+                    let InFlight { event, node, due, .. } = self.in_flight.remove(at);
                     self.version += 1;
-                    self.executed(event, node, time);
+                    self.executed(event, node, due, time);
                 }
                 (.., Some((time, node))) => self.execute(time, node),
                 _ => break,
             }
         }
-    }
-
-    /// The next event that was confirmed before it is due, and when it counts as executed: then, or when its window closes.
-    fn next_early(&self) -> Option<(i64, usize)> {
-        let early = self.in_flight.iter().enumerate().filter_map(|(index, flight)| {
-            let since = flight.executed?;
-            Some((flight.due.min(self.agenda.upper(flight.node)).max(since), index))
-        });
-        early.min()
-    }
-
-    /// An event in flight was executed, `at` some time up to now. What follows it can go on. One that was executed before it
-    /// was due stays in flight until it is.
-    pub fn handle_executed(&mut self, now: Time, event: EventId, at: Time) {
-        self.now = self.now.max(now.as_micros());
-        let Some(found) = self.in_flight.iter().position(|flight| flight.event == event) else { return };
-        let InFlight { node, due, .. } = self.in_flight[found];
-        self.version += 1;
-        if due > self.now {
-            self.in_flight[found].executed = Some(at.as_micros());
-            return;
-        }
-        self.in_flight.remove(found);
-        let time = self.recorded(due, at.as_micros(), self.agenda.upper(node));
-        self.executed(event, node, time);
-    }
-
-    fn executed(&mut self, event: EventId, node: u32, time: i64) {
-        if self.in_time(time, node) {
-            self.fix(event, time, How::Dispatched);
-            self.start(node, time);
-        }
-    }
-
-    /// An event in flight cannot be executed any more: the execution has failed.
-    pub fn handle_failed(&mut self, now: Time, event: EventId) {
-        self.now = self.now.max(now.as_micros());
-        if let Some(found) = self.in_flight.iter().position(|flight| flight.event == event) {
-            let InFlight { node, .. } = self.in_flight.remove(found);
-            let latest = Time::from_micros(self.agenda.upper(node));
-            self.version += 1;
-            self.missed = Some(Missed { event, time: Time::from_micros(self.now), latest });
-        }
-    }
-
-    /// The latest time at which an event in flight can be executed, if there is one.
-    pub fn latest(&self, event: EventId) -> Option<Time> {
-        let flight = self.in_flight.iter().find(|flight| flight.event == event)?;
-        Some(self.agenda.upper(flight.node)).filter(|&upper| upper < i64::MAX).map(Time::from_micros)
     }
 
     /// The next event to be fixed, however it came to be; call until there is none.
@@ -348,16 +306,6 @@ impl Dispatcher {
     /// True if no news of an event is waited for.
     pub fn is_hidden(&self, event: EventId) -> bool {
         self.reduction.places[event.index()].heard_by != Some(event)
-    }
-
-    /// True if anything is in flight.
-    pub fn has_in_flight(&self) -> bool {
-        !self.in_flight.is_empty()
-    }
-
-    /// True from the dispatch of an event until it counts as executed.
-    pub fn is_in_flight(&self, event: EventId) -> bool {
-        self.in_flight.iter().any(|flight| flight.event == event)
     }
 
     /// The executable event at which the tree of links that an event belongs to begins; itself if it is executable.
@@ -418,6 +366,12 @@ impl Dispatcher {
         self.knowledge.happened(self.network(), event)
     }
 
+    /// When news of a contingent event comes at the latest, by the model; `None` if it may never, or what it follows has not
+    /// begun.
+    pub fn news_by(&self, event: EventId) -> Option<Time> {
+        self.knowledge.news_by(&self.network, event)
+    }
+
     /// The same for all events.
     pub fn all_happened(&self) -> Vec<Option<(i64, i64)>> {
         self.knowledge.all_happened(self.network())
@@ -468,11 +422,7 @@ impl Dispatcher {
             let heard = self.reduction.places[root.index()]
                 .heard_by
                 .is_some_and(|event| self.known(event).observed.is_some());
-            if heard {
-                (self.recorded(start, start.max(self.now), end).min(end), node, How::Buffered)
-            } else {
-                (end, node, How::Imagined)
-            }
+            if heard { (start.min(end), node, How::Buffered) } else { (end, node, How::Imagined) }
         });
         ends.min_by_key(|&(time, node, _)| (time, node))
     }
@@ -499,46 +449,6 @@ impl Dispatcher {
         self.start(node, time);
     }
 
-    fn execute(&mut self, time: i64, node: u32) {
-        if !self.in_time(time, node) {
-            return;
-        }
-        let event = self.reduction.event_of[node as usize];
-        self.version += 1;
-        self.dispatches.push_back(Dispatch { event, time: Time::from_micros(time) });
-        if self.confirmed[event.index()] {
-            self.agenda.take(node);
-            self.in_flight.push(InFlight { event, node, due: time, executed: None });
-        } else {
-            self.fix(event, time, How::Dispatched);
-            self.start(node, time);
-        }
-    }
-
-    /// When an event that was due and is executed `at` some time is recorded: when due, unless that is too long ago. What
-    /// is late for its window by no more than is allowed counts as just in time.
-    fn recorded(&self, due: i64, at: i64, latest: i64) -> i64 {
-        let lateness = self.settings.lateness.as_micros();
-        if at.saturating_sub(due) <= lateness {
-            due
-        } else if at > latest && at.saturating_sub(latest) <= lateness {
-            latest
-        } else {
-            at
-        }
-    }
-
-    /// False, and the end of it all, if an event would be executed after its window.
-    fn in_time(&mut self, time: i64, node: u32) -> bool {
-        let latest = self.agenda.upper(node);
-        if time > latest {
-            let event = self.reduction.event_of[node as usize];
-            let (time, latest) = (Time::from_micros(time), Time::from_micros(latest));
-            self.missed = Some(Missed { event, time, latest });
-        }
-        time <= latest
-    }
-
     /// What happens to everything measured from a node once that is executed.
     fn start(&mut self, node: u32, time: i64) {
         for link in self.agenda.execute(node, time) {
@@ -558,6 +468,9 @@ impl Dispatcher {
     }
 
     fn fix(&mut self, event: EventId, time: i64, how: How) {
+        // At the moment of its own news nothing is held back.
+        let heard_then = self.known(event).observed == Some(Time::from_micros(time));
+        let how = if how == How::Buffered && heard_then { How::Observed } else { how };
         if self.knowledge.fix(event, time, how) {
             self.version += 1;
             self.fixed.push_back(event);
@@ -571,10 +484,7 @@ impl Dispatcher {
     }
 }
 
-/// The agenda of a plan, with the lead of the events that are to be confirmed.
-fn agenda(reduction: &Reduction, net: &Dispatchable, confirmed: &[bool], lead: Duration) -> Agenda {
-    Agenda::new(net, |node| {
-        let event = reduction.event_of[node as usize];
-        if confirmed[event.index()] { lead.as_micros() } else { 0 }
-    })
+/// The agenda of a plan, with the lead of its events.
+fn agenda(reduction: &Reduction, net: &Dispatchable, lead: impl Fn(EventId) -> i64) -> Agenda {
+    Agenda::new(net, |node| lead(reduction.event_of[node as usize]))
 }

@@ -14,12 +14,14 @@ use kirk_network::{Duration, EventId, Network, Time};
 
 use crate::activity::Handover;
 use crate::checkpoint::Checkpoint;
-use crate::dispatcher::{Adoption, Dispatcher, Reception, Settings};
+use crate::dispatcher::{Adoption, Dispatch, Dispatcher, Reception, Settings};
 use crate::execution::{Execution, Failure, How, Outcome, Row, at};
 use crate::order::{Order, Patience, State};
 use crate::plan::Plan;
 use crate::rebuild::{Rebuild, Rebuilt};
-use crate::record::{missed_window, record, row};
+use crate::record::{all_over, missed_window, record, row};
+
+const MICROSECOND: Duration = Duration::from_micros(1);
 
 /// An executive in the middle of its mission.
 #[derive(Clone, Debug)]
@@ -40,7 +42,7 @@ pub struct Executive {
     unannounced: Vec<EventId>,
     /// News of what began with an event that is in flight.
     held: Vec<(Time, EventId)>,
-    /// Events that were imagined, and when their news was to come at the latest.
+    /// Events that were imagined, and when their news was to come at the latest by the model.
     awaited: Vec<(Time, EventId)>,
     /// News the model rules out, while it is not known whether there is a plan with it.
     broken: Vec<Broken>,
@@ -76,10 +78,17 @@ pub enum Replanned {
 pub enum Output {
     /// Hand this over to the driver.
     Send(Sending),
-    /// This event was fixed: dispatched and confirmed, observed, released from the buffer, imagined.
-    Fixed(EventId),
-    /// Something a person should know.
+    /// An event was fixed: dispatched and confirmed, observed, released from the buffer, imagined.
+    Fixed {
+        /// The event.
+        event: EventId,
+        /// When it was due, if somebody is told of it just now and is to carry it out.
+        due: Option<Time>,
+    },
+    /// Something a person should know: not all is as it should be.
     Warning(String),
+    /// Something a person may want to know: all is well.
+    Note(String),
     /// The mission is over.
     Over,
 }
@@ -134,8 +143,10 @@ pub struct Setup {
     pub run: String,
     /// Lead and lateness; what is confirmed follows from the handovers.
     pub settings: Settings,
-    /// What the driver hears of, in the order of the events. Empty if there is no driver.
+    /// What somebody is to carry out, in the order of the events.
     pub handovers: Vec<Handover>,
+    /// A driver is told of that and confirms it. Without one it counts as carried out when it is told.
+    pub driver: bool,
     /// How long to wait before trying again.
     pub patience: Patience,
 }
@@ -144,8 +155,9 @@ impl Setup {
     /// The settings of the dispatcher: what is handed over is to be confirmed.
     fn settings_for(&self, network: &Network) -> Settings {
         let ours = |event: EventId| network.link_of(event).is_none() && event != network.origin();
-        let confirmed = self.handovers.iter().map(|handover| handover.event).filter(|&event| ours(event));
-        Settings { confirmed: confirmed.collect(), ..self.settings.clone() }
+        let events = self.handovers.iter().map(|handover| handover.event);
+        let carried_out = events.filter(|&event| ours(event)).collect();
+        Settings { carried_out, confirmed: self.driver, ..self.settings.clone() }
     }
 }
 
@@ -160,7 +172,8 @@ impl Executive {
 
     /// Nothing is in the hands of a driver.
     fn around(dispatcher: Dispatcher, setup: Setup) -> Executive {
-        let Setup { program, run, settings, handovers, patience } = setup;
+        let Setup { program, run, settings, handovers, driver, patience } = setup;
+        let handovers = if driver { handovers } else { Vec::new() };
         let network = dispatcher.network();
         let unannounced = handovers.iter().map(|handover| handover.event);
         let mut unannounced: Vec<EventId> =
@@ -367,8 +380,9 @@ impl Executive {
         }
         let retry = self.orders.iter().filter_map(|order| order.state.wakes());
         let surely = self.unannounced.iter().filter_map(|&event| surely(&self.dispatcher, event));
-        // One microsecond more, and it is lost.
-        let lost = self.awaited.iter().map(|(by, _)| Time::from_micros(by.as_micros().saturating_add(1)));
+        // One microsecond more than is allowed, and it is lost.
+        let lost =
+            self.awaited.iter().filter_map(|(by, _)| by.checked_add(self.slack)?.checked_add(MICROSECOND));
         let soonest = retry.chain(surely).chain(lost).min();
         soonest.into_iter().chain(self.dispatcher.poll_timeout()).min()
     }
@@ -399,6 +413,12 @@ impl Executive {
             // What is not known yet may still be heard.
             execution.rows.retain(|row| row.how != How::Never);
         }
+        // The origin is time zero whatever the driver does, but an activity that was to start there may not have.
+        let unconfirmed = |row: &Row| {
+            let open = |order: &Order| order.state != State::Done && order.name == row.event;
+            row.how == How::Dispatched && self.orders.iter().any(open)
+        };
+        execution.rows.retain(|row| !unconfirmed(row));
         execution.failure = self.failure.clone();
         execution.outcome = match (&self.failure, self.over) {
             (Some(_), _) => Outcome::Failed,
@@ -421,18 +441,16 @@ impl Executive {
         if let Some(failure) = &self.failure {
             return Time::from_micros(failure.time.0.as_micros());
         }
-        let ends = self.network().event_ids().filter_map(|event| {
-            let known = self.dispatcher.known(event);
-            let surely = || self.dispatcher.happened(event).map(|(_, high)| Time::from_micros(high));
-            known.fixed.map(|(time, _)| time).max(known.observed).or_else(surely)
-        });
-        ends.max().unwrap_or(Time::ZERO)
+        all_over(&self.dispatcher)
     }
 
     fn hear(&mut self, arrived: Time, event: EventId) -> Answer {
         let name = self.network().label(event).to_string();
         match self.dispatcher.handle_observation(arrived, event) {
-            Reception::Accepted => Answer::Accepted,
+            Reception::Accepted => {
+                self.tell_rounding(arrived, event);
+                Answer::Accepted
+            }
             Reception::Repeated => Answer::Ignored(format!("`{name}` was heard before")),
             Reception::NotContingent => {
                 Answer::Ignored(format!("`{name}` is not Nature's to decide: kirk dispatches it"))
@@ -460,12 +478,28 @@ impl Executive {
         }
     }
 
+    /// Says so when news counts as if it had come when the model allows it.
+    fn tell_rounding(&mut self, arrived: Time, event: EventId) {
+        let Some(heard) = self.dispatcher.known(event).observed.filter(|&heard| heard != arrived) else {
+            return;
+        };
+        let (name, slack) = (self.network().label(event), self.slack);
+        let first = if heard < arrived { "the latest" } else { "the earliest" };
+        let text = format!(
+            "news of `{name}` at {arrived} s counts as of {heard} s, {first} the model allows: it is within the tolerance of \
+             {slack} s"
+        );
+        self.outputs.push_back(Output::Note(text));
+    }
+
     /// Turns what the dispatcher has decided into orders and outputs, and looks after the orders there are.
     fn settle(&mut self, now: Time) {
+        let mut told = Vec::new();
         while let Some(dispatch) = self.dispatcher.poll_dispatch() {
             self.hand_over(dispatch.event, dispatch.time, now);
+            told.push(dispatch);
         }
-        self.tell_fixed();
+        self.tell_fixed(&told);
         for event in std::mem::take(&mut self.unannounced) {
             match surely(&self.dispatcher, event) {
                 Some(time) if time <= now => self.hand_over(event, time, now),
@@ -489,28 +523,22 @@ impl Executive {
         {
             // A plan with the last news would have come too late.
             self.dispatcher.fix_heard();
-            self.tell_fixed();
+            self.tell_fixed(&[]);
             self.over = true;
             self.changes += 1;
             self.outputs.push_back(Output::Over);
         }
     }
 
-    fn tell_fixed(&mut self) {
+    fn tell_fixed(&mut self, told: &[Dispatch]) {
         while let Some(event) = self.dispatcher.poll_fixed() {
-            self.outputs.push_back(Output::Fixed(event));
+            let told = || told.iter().find(|dispatch| dispatch.event == event).map(|dispatch| dispatch.time);
+            let due = if self.dispatcher.is_carried_out(event) { told() } else { None };
+            self.outputs.push_back(Output::Fixed { event, due });
             if let Some((_, How::Imagined)) = self.dispatcher.known(event).fixed {
-                self.awaited.extend(self.news_by(event).map(|by| (by, event)));
+                self.awaited.extend(self.dispatcher.news_by(event).map(|by| (by, event)));
             }
         }
-    }
-
-    /// When news of an event is to come at the latest, our lateness allowed for.
-    fn news_by(&self, event: EventId) -> Option<Time> {
-        let link = self.network().contingents()[self.network().link_of(event)?];
-        let (_, high) = self.dispatcher.happened(event)?;
-        let by = Time::from_micros(high).checked_add(link.delay.max.finite()?)?;
-        by.checked_add(self.slack)
     }
 
     /// Says so when news is lost: what was imagined stands, but something is wrong in the world.
@@ -519,7 +547,7 @@ impl Executive {
             if self.dispatcher.known(event).observed.is_some() {
                 continue;
             }
-            if by >= now {
+            if by.checked_add(self.slack).is_none_or(|by| by >= now) {
                 self.awaited.push((by, event));
                 continue;
             }

@@ -159,8 +159,10 @@ pub struct Start {
     pub patience: (Seconds, Seconds),
     /// How many times faster than real time it is executed.
     pub speed: f64,
-    /// What the driver hears of: names and companions.
+    /// What somebody is to carry out: names and companions.
     pub handovers: Vec<(String, Option<String>)>,
+    /// True if a driver is told of that and confirms it.
+    pub driver: bool,
     /// Names no user wrote.
     pub internal: Vec<String>,
     /// What the clocks say at time 0.
@@ -208,6 +210,7 @@ impl Start {
             patience: (seconds(setup.patience.first), seconds(setup.patience.most)),
             speed,
             handovers: setup.handovers.iter().map(|h| (h.name.clone(), h.companion.clone())).collect(),
+            driver: setup.driver,
             internal: internal.collect(),
             clocks,
             shell,
@@ -255,6 +258,7 @@ impl Start {
             run: self.run.clone(),
             settings,
             handovers,
+            driver: self.driver,
             patience: Patience { first: self.patience.0.0, most: self.patience.1.0 },
         })
     }

@@ -174,6 +174,19 @@ impl Knowledge {
         Some(self.intervals(network, root, start)[self.number[event.index()] as usize])
     }
 
+    /// When news of a contingent event comes at the latest, by the model and whatever else was heard; `None` if it may never, or
+    /// its tree has not begun.
+    pub(crate) fn news_by(&self, network: &Network, event: EventId) -> Option<Time> {
+        let mut latest = link_to(network, event).delay.max.finite()?;
+        let (mut at, root) = (event, self.root[event.index()]);
+        while at != root {
+            let link = link_to(network, at);
+            latest = latest.checked_add(link.upper)?;
+            at = link.from;
+        }
+        self.of(root).fixed?.0.checked_add(latest)
+    }
+
     /// The same for all events.
     pub(crate) fn all_happened(&self, network: &Network) -> Vec<Option<Interval>> {
         let mut all = vec![None; self.events.len()];
@@ -230,6 +243,22 @@ pub(crate) fn heard_now(link: &ContingentLink, now: i64) -> Interval {
         Bound::Infinite => i64::MIN,
     };
     (earliest, now.saturating_sub(link.delay.min.as_micros()))
+}
+
+/// The interval in which an event happened whose news the model rules out, if its activation happened in another: what the
+/// news proves, if either the duration or the delay was other than the model says and nobody knows which.
+pub(crate) fn heard_against(link: &ContingentLink, activation: Interval, now: i64) -> Interval {
+    let (low, high) = heard_now(link, now);
+    let earliest = activation.0.saturating_add(link.lower.as_micros());
+    let latest = activation.1.saturating_add(link.upper.as_micros());
+    if latest < low {
+        // It took longer, or the news did.
+        return (earliest, high);
+    }
+    // It took less, or the news did. It was after it had begun in any case, and before it was heard of.
+    let low = low.max(activation.0).min(now);
+    let high = if now >= earliest || high < low { now } else { high };
+    (low, high)
 }
 
 fn link_to(network: &Network, event: EventId) -> &ContingentLink {

@@ -43,7 +43,7 @@ pub struct Deed {
 pub struct Nature<'a> {
     network: &'a Network,
     temper: Temper,
-    random: fastrand::Rng,
+    seed: u64,
     /// For each event, when its news must arrive.
     observations: Vec<Option<Time>>,
     children: Vec<Vec<EventId>>,
@@ -68,12 +68,11 @@ impl<'a> Nature<'a> {
         for link in network.contingents() {
             children[link.from.index()].push(link.to);
         }
-        let random = fastrand::Rng::with_seed(seed);
         let count = network.events().len();
         Nature {
             network,
             temper,
-            random,
+            seed,
             observations: by_event,
             children,
             required: vec![(i64::MIN, i64::MAX); count],
@@ -130,10 +129,14 @@ impl<'a> Nature<'a> {
         if low > high {
             return Err(self.first_impossible(event, root, root_time));
         }
+        // Of its own for each event, so that Nature does the same whatever is done first.
+        let mut random = fastrand::Rng::with_seed(
+            self.seed ^ (u64::from(event.0) + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15),
+        );
         let truth = match self.temper {
             Temper::Upper => high,
             Temper::Lower => low,
-            Temper::Random => self.random.i64(low..=high),
+            Temper::Random => random.i64(low..=high),
         };
         self.truth[event.index()] = truth;
         let min = link.delay.min.as_micros();
@@ -142,14 +145,14 @@ impl<'a> Nature<'a> {
             (None, Bound::Finite(max)) => Some(truth.saturating_add(match self.temper {
                 Temper::Upper => max.as_micros(),
                 Temper::Lower => min,
-                Temper::Random => self.random.i64(min..=max.as_micros()),
+                Temper::Random => random.i64(min..=max.as_micros()),
             })),
             (None, Bound::Infinite) => match self.temper {
                 Temper::Upper => None,
                 Temper::Lower => Some(truth.saturating_add(min)),
                 Temper::Random => {
                     let much_later = min.saturating_add(2 * upper).saturating_add(1_000_000);
-                    self.random.bool().then(|| truth.saturating_add(self.random.i64(min..=much_later)))
+                    random.bool().then(|| truth.saturating_add(random.i64(min..=much_later)))
                 }
             },
         };

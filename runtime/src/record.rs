@@ -1,12 +1,14 @@
 //! From a dispatcher to the record of its execution.
 
 use kirk_network::json::Seconds;
+use kirk_network::precedence::precedence;
 use kirk_network::{Duration, EventId, Network, Time};
 
 use crate::dispatcher::{Dispatcher, Missed};
 use crate::execution::{Execution, FORMAT, Failure, How, Outcome, Row, at};
 
-/// The record of an execution up to `end`; `truth` where it is known.
+/// The record of an execution up to `end`; `truth` where it is known. At one time what must not come after something else
+/// comes before it.
 pub(crate) fn record(
     dispatcher: &Dispatcher,
     program: &str,
@@ -15,18 +17,24 @@ pub(crate) fn record(
     truth: &[Option<Time>],
 ) -> Execution {
     let network = dispatcher.network();
-    let mut rows: Vec<((i64, u32), Row)> = Vec::new();
+    let sequence = |event: EventId| {
+        let known = dispatcher.known(event);
+        if known.fixed.is_some() { known.sequence } else { u32::MAX }
+    };
+    let rank = precedence(network, sequence);
+    let mut rows: Vec<((i64, u32, u32), Row)> = Vec::new();
     let all_happened = dispatcher.happened_by(end);
     for event in network.event_ids() {
         let truth = truth.get(event.index()).copied().flatten();
-        let Some((order, row)) = row(dispatcher, event, all_happened[event.index()], truth) else { continue };
+        let Some((time, row)) = row(dispatcher, event, all_happened[event.index()], truth) else { continue };
+        let place = (time, rank[event.index()], sequence(event));
         for name in &network.events()[event.index()].names {
             if internal || !name.internal {
-                rows.push((order, Row { event: name.text.clone(), ..row.clone() }));
+                rows.push((place, Row { event: name.text.clone(), ..row.clone() }));
             }
         }
     }
-    rows.sort_by_key(|(order, _)| *order);
+    rows.sort_by_key(|(place, _)| *place);
     let failure = dispatcher.missed().map(|missed| missed_window(network, missed));
     Execution {
         format: FORMAT.to_string(),
@@ -39,18 +47,28 @@ pub(crate) fn record(
     }
 }
 
+/// When all was over: the last event was executed or acted on, or had happened in any case.
+pub(crate) fn all_over(dispatcher: &Dispatcher) -> Time {
+    let happened = dispatcher.all_happened();
+    let ends = dispatcher.network().event_ids().filter_map(|event| {
+        let fixed = dispatcher.known(event).fixed.map(|(time, _)| time);
+        fixed.max(happened[event.index()].map(|(_, high)| Time::from_micros(high)))
+    });
+    ends.max().unwrap_or(Time::ZERO)
+}
+
 /// The row of an event, still without a name, and its place in time; `None` if it is ours and was not executed.
 pub(crate) fn row(
     dispatcher: &Dispatcher,
     event: EventId,
     happened: Option<(i64, i64)>,
     truth: Option<Time>,
-) -> Option<((i64, u32), Row)> {
+) -> Option<(i64, Row)> {
     let known = dispatcher.known(event);
     let contingent = dispatcher.network().link_of(event).is_some();
-    let (time, how, order) = match known.fixed {
-        Some((time, how)) => (Some(at(time)), how, (time.as_micros(), known.sequence)),
-        None if contingent => (None, How::Never, (happened.map_or(i64::MAX, |(_, high)| high), u32::MAX)),
+    let (time, how, place) = match known.fixed {
+        Some((time, how)) => (Some(at(time)), how, time.as_micros()),
+        None if contingent => (None, How::Never, happened.map_or(i64::MAX, |(_, high)| high)),
         None => return None,
     };
     let interval = |(low, high): (i64, i64)| (at(Time::from_micros(low)), at(Time::from_micros(high)));
@@ -62,15 +80,23 @@ pub(crate) fn row(
         happened: happened.filter(|_| contingent).map(interval),
         truth: truth.map(at),
     };
-    Some((order, row))
+    Some((place, row))
 }
 
 pub(crate) fn missed_window(network: &Network, missed: Missed) -> Failure {
     let event = network.label(missed.event).to_string();
-    let detail = format!(
-        "`{event}` could be executed until {} at the latest, but what it waits for came at {}",
-        missed.latest, missed.time
-    );
+    let detail = if missed.due <= missed.latest {
+        format!(
+            "`{event}` was due at {} s and could be executed until {} s at the latest, but was not by {} s: nobody was there, or \
+             not in time",
+            missed.due, missed.latest, missed.time
+        )
+    } else {
+        format!(
+            "`{event}` could be executed until {} s at the latest, but what it waits for came at {} s",
+            missed.latest, missed.due
+        )
+    };
     Failure {
         event,
         time: Seconds(Duration::from_micros(missed.time.as_micros())),

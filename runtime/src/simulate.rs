@@ -9,7 +9,7 @@ use crate::dispatcher::{Dispatcher, Reception, Settings, Strategy};
 use crate::execution::Execution;
 use crate::nature::{Impossible, Nature, Temper};
 use crate::plan::Plan;
-use crate::record::record;
+use crate::record::{all_over, record};
 
 /// What to simulate.
 #[derive(Clone, Debug, Default)]
@@ -69,11 +69,9 @@ pub fn simulate(plan: &Plan, program: &str, simulation: &Simulation) -> Result<E
         if simulation.observations.contains(&(event, time)) {
             dispatcher.handle_observation(time, event);
             plan_anew(&mut dispatcher, time);
-            let late = dispatcher.known(event).fixed.is_some_and(|(fixed, _)| fixed > now);
-            now = if late { time } else { now };
         }
     }
-    let mut execution = record(&dispatcher, program, now, simulation.internal, &truth);
+    let mut execution = record(&dispatcher, program, all_over(&dispatcher), simulation.internal, &truth);
     execution.seed = Some(simulation.seed);
     Ok(execution)
 }

@@ -10,7 +10,7 @@
 mod oracle;
 
 use std::cmp::Reverse;
-use std::collections::{BinaryHeap, HashMap};
+use std::collections::{BinaryHeap, HashMap, HashSet};
 use std::time::Instant;
 
 use kirk_network::generate::{
@@ -24,6 +24,7 @@ use kirk_runtime::{
     Answer, Executive, Outcome, Output, Patience, Plan, Rebuild, Replanned, Scope, Settings, Setup, Strategy,
     Temper, handovers, recover, replay, verify,
 };
+use oracle::order::precedes;
 use oracle::random::{self, Shape};
 use serde_json::value::RawValue;
 
@@ -46,6 +47,8 @@ struct World {
     dies: u32,
     /// Of 100 news so many come when the model says they cannot. Then nothing is promised but that the journal is right.
     lies: u32,
+    /// Of 100 events so many are nobody's to execute: they happen when they are due.
+    nobodys: u32,
 }
 
 /// What is still to come.
@@ -67,6 +70,10 @@ struct Life {
     done: HashMap<String, i64>,
     /// When executable events really happened, and contingent ones.
     truth: Vec<Option<i64>>,
+    /// What the driver has said it has done.
+    confirmed: HashSet<String>,
+    /// What must not come before what, apart from the origin, which is time zero whether its activities have begun or not.
+    precedes: Box<dyn Fn(EventId, EventId) -> bool>,
     journal: String,
     checksum: u32,
     deaths: u32,
@@ -85,6 +92,9 @@ struct Seen {
 impl Life {
     fn new(network: &Network, strategy: Strategy, world: World, seed: u64) -> Option<Life> {
         let plan = Plan::new(network).ok()?;
+        let mut random = fastrand::Rng::with_seed(seed);
+        let mut handovers = handovers(plan.network(), None, Scope::All);
+        handovers.retain(|_| random.u32(0..100) >= world.nobodys);
         let setup = Setup {
             program: "random".into(),
             run: "run".into(),
@@ -94,7 +104,8 @@ impl Life {
                 lateness: Duration::from_micros(world.slow.max(world.lead)),
                 ..Settings::default()
             },
-            handovers: handovers(plan.network(), None, Scope::All),
+            handovers,
+            driver: true,
             patience: Patience {
                 first: Duration::from_micros(1),
                 most: Duration::from_micros(world.slow / 12 + 1),
@@ -104,13 +115,16 @@ impl Life {
         let shell = RawValue::from_string("null".into()).unwrap();
         let start = Start::new(network, &setup, 1.0, clocks, shell, "test");
         let (journal, checksum) = write(&Line::new(Time::ZERO, Record::Start(Box::new(start))), 0);
+        let precedes = Box::new(precedes(plan.network(), Some(plan.network().origin())));
         Some(Life {
             network: plan.network().clone(),
+            confirmed: HashSet::new(),
             truth: vec![None; plan.network().events().len()],
             executive: Executive::new(plan, setup.clone()),
             setup,
             world,
-            random: fastrand::Rng::with_seed(seed),
+            random,
+            precedes,
             coming: BinaryHeap::new(),
             rebuilding: Vec::new(),
             done: HashMap::new(),
@@ -239,6 +253,7 @@ impl Life {
                 }
             }
             Coming::Answer { id, good: true, lost: false } => {
+                self.confirmed.insert(id.clone());
                 self.record(now, Record::Executed { id: id.clone(), ago: None });
                 self.executive.handle_executed(Time::from_micros(now), &id, None);
             }
@@ -250,17 +265,29 @@ impl Life {
         Ok(())
     }
 
+    /// What is handed over follows nothing that the driver has not confirmed.
+    fn nothing_before(&self, name: &str) -> Result<(), String> {
+        let event = self.network.find(name).unwrap();
+        let ours = |event: EventId| self.network.link_of(event).is_none();
+        let open = self.setup.handovers.iter().find(|earlier| {
+            let confirmed = self.confirmed.contains(&format!("run/{}", earlier.name));
+            ours(event) && ours(earlier.event) && !confirmed && (self.precedes)(earlier.event, event)
+        });
+        open.map_or(Ok(()), |open| Err(format!("{name} was handed over before {} was confirmed", open.name)))
+    }
+
     fn perform(&mut self, now: i64, nature: &mut Nature) -> Result<(), String> {
         let mut sends = Vec::new();
         while let Some(output) = self.executive.poll_output() {
             match output {
                 Output::Send(sending) => {
+                    self.nothing_before(&sending.name)?;
                     let due = kirk_network::json::seconds(Duration::from_micros(sending.due.as_micros()));
                     let (id, attempt) = (sending.id.clone(), sending.attempt);
                     self.record(now, Record::Dispatch { id, due, attempt });
                     sends.push(sending);
                 }
-                Output::Fixed(event) => {
+                Output::Fixed { event, .. } => {
                     let time = self.executive.dispatcher().known(event).fixed.unwrap().0;
                     let handed = self.setup.handovers.iter().any(|handover| handover.event == event);
                     if self.network.link_of(event).is_none() && (!handed || event == self.network.origin()) {
@@ -269,6 +296,7 @@ impl Life {
                 }
                 Output::Warning(text) if self.world.lies == 0 => return Err(text),
                 Output::Warning(_) => self.seen.warnings += 1,
+                Output::Note(_) => {}
                 Output::Over => {
                     let execution = self.executive.execution(Time::from_micros(now), false);
                     self.record(now, Record::End { execution });
@@ -496,6 +524,14 @@ fn a_process_that_dies_goes_on_with_the_last_of_many_plans() {
 #[test]
 fn an_attempt_that_fails_is_made_again() {
     missions_hold(World { slow: 90_000, fails: 30, dies: 10, ..World::default() }, 300);
+}
+
+#[test]
+fn what_nobody_has_to_execute_happens_on_time_however_late_the_clock_is_looked_at() {
+    for slow in [0, 90_000] {
+        missions_hold(World { slow, nobodys: 50, dies: 10, ..World::default() }, 300);
+        missions_hold(World { slow, nobodys: 100, ..World::default() }, 100);
+    }
 }
 
 #[test]

@@ -26,6 +26,7 @@ fn executive() -> Executive {
         run: "run".into(),
         settings: Settings::default(),
         handovers: handovers(plan.network(), None, Scope::Starts),
+        driver: true,
         patience: Patience { first: second, most: second },
     };
     Executive::new(plan, setup)
@@ -153,6 +154,7 @@ fn a_driver_that_fails_for_a_day_is_tried_some_hundreds_of_times() {
         run: "run".into(),
         settings: Settings::default(),
         handovers: handovers(plan.network(), None, Scope::Starts),
+        driver: true,
         patience: Patience { first: Duration::from_micros(100_000), most: Duration::from_secs(2) },
     };
     let mut executive = Executive::new(plan, setup);
@@ -172,4 +174,160 @@ fn a_driver_that_fails_for_a_day_is_tried_some_hundreds_of_times() {
         now = executive.poll_timeout().unwrap();
     }
     assert!((500..1000).contains(&attempts), "{attempts}");
+}
+
+/// An executive for a network, with lead and lateness, in seconds; the driver hears of everything that is ours, or starts only.
+fn executive_of(network: &str, scope: Scope, tolerance: f64) -> Executive {
+    let plan = Plan::new(&json::read(network).unwrap()).unwrap();
+    let tolerance = Duration::from_micros((tolerance * 1e6) as i64);
+    let settings = Settings { lateness: tolerance, ..Settings::default() };
+    let setup = Setup {
+        program: "test".into(),
+        run: "run".into(),
+        settings,
+        handovers: handovers(plan.network(), None, scope),
+        driver: true,
+        patience: Patience { first: Duration::from_micros(100_000), most: Duration::from_secs(1) },
+    };
+    Executive::new(plan, setup)
+}
+
+fn millis(millis: i64) -> Time {
+    Time::from_micros(millis * 1000)
+}
+
+/// The names of what is to be handed over now.
+fn sends(executive: &mut Executive) -> Vec<String> {
+    let outputs = std::iter::from_fn(|| executive.poll_output());
+    outputs.filter_map(|output| if let Output::Send(s) = output { Some(s.name) } else { None }).collect()
+}
+
+/// `a` takes 1 to 2 s of ours, `b` follows it by up to 5 s.
+const ONE_AFTER_THE_OTHER: &str = r#"{"format": "kirk-network/1", "origin": "z",
+    "events": ["z", "b:start", "a:start", "a:end"],
+    "requirements": [{"from": "a:end", "to": "b:start", "lower": 0, "upper": 5},
+                     {"from": "a:start", "to": "a:end", "lower": 1, "upper": 2},
+                     {"from": "z", "to": "b:start", "lower": 1}]}"#;
+
+#[test]
+fn what_follows_at_no_distance_waits_for_the_confirmation_and_a_failed_attempt_is_made_again() {
+    let mut executive = executive_of(ONE_AFTER_THE_OTHER, Scope::All, 0.0);
+    executive.handle_timeout(Time::ZERO);
+    assert_eq!(sends(&mut executive), ["z", "a:start"]);
+    for id in ["run/z", "run/a:start"] {
+        executive.handle_sent(Time::ZERO, id);
+        executive.handle_executed(Time::ZERO, id, None);
+    }
+    executive.handle_timeout(second(1));
+    assert_eq!(sends(&mut executive), ["a:end"], "b:start waits for it");
+    executive.handle_sent(second(1), "run/a:end");
+    executive.handle_failed(millis(1100), "run/a:end", "no", false);
+    executive.handle_timeout(millis(1199));
+    assert_eq!(sends(&mut executive), [""; 0]);
+    executive.handle_timeout(millis(1200));
+    assert_eq!(sends(&mut executive), ["a:end"], "its own window is open until 2 s");
+    executive.handle_sent(millis(1200), "run/a:end");
+    executive.handle_executed(millis(1300), "run/a:end", None);
+    assert_eq!(sends(&mut executive), ["b:start"]);
+    executive.handle_sent(millis(1300), "run/b:start");
+    executive.handle_executed(millis(1300), "run/b:start", None);
+    let execution = executive.execution(second(2), false);
+    assert_eq!(execution.outcome, Outcome::Completed);
+    let rows: Vec<&str> = execution.rows.iter().map(|row| row.event.as_str()).collect();
+    assert_eq!(rows, ["z", "a:start", "a:end", "b:start"]);
+    assert_eq!(verify(executive.network(), &execution), []);
+}
+
+/// A pause of exactly 2 s, which is nobody's to execute, then `b`.
+const PAUSE: &str = r#"{"format": "kirk-network/1", "origin": "z", "events": ["z", "pause", "b:start", "b:end"],
+    "requirements": [{"from": "z", "to": "pause", "lower": 2, "upper": 2},
+                     {"from": "pause", "to": "b:start", "lower": 0, "upper": 10},
+                     {"from": "b:start", "to": "b:end", "lower": 1, "upper": 2}]}"#;
+
+#[test]
+fn what_nobody_executes_is_over_on_time_though_nobody_was_there() {
+    let mut executive = executive_of(PAUSE, Scope::Starts, 0.1);
+    executive.handle_timeout(millis(3500));
+    let due = std::iter::from_fn(|| executive.poll_output()).find_map(|output| match output {
+        Output::Send(sending) => Some((sending.name, sending.due)),
+        _ => None,
+    });
+    assert_eq!(due, Some(("b:start".to_string(), second(2))), "what it is late by can be seen");
+    executive.handle_sent(millis(3500), "run/b:start");
+    executive.handle_executed(millis(3500), "run/b:start", None);
+    executive.handle_timeout(second(9));
+    let execution = executive.execution(second(9), false);
+    assert_eq!(execution.outcome, Outcome::Completed, "{:?}", execution.failure);
+    let time =
+        |name| execution.rows.iter().find(|row| row.event == name).unwrap().time.unwrap().0.to_string();
+    assert_eq!(["pause", "b:start", "b:end"].map(time), ["2", "3.5", "4.5"]);
+    assert_eq!(verify(executive.network(), &execution), []);
+}
+
+#[test]
+fn a_window_that_was_missed_says_that_nobody_was_there() {
+    let mut executive = executive_of(PAUSE, Scope::Starts, 0.1);
+    executive.handle_timeout(second(20));
+    let detail = &executive.failure().unwrap().detail;
+    assert!(detail.contains("was due at 2 s and could be executed until 12 s"), "{detail}");
+}
+
+#[test]
+fn news_that_is_late_has_one_deadline_and_proves_no_more_than_it_can() {
+    let mut executive = executive_of(
+        r#"{"format": "kirk-network/1", "origin": "go", "events": ["go", "drive:end", "home"],
+            "requirements": [{"from": "drive:end", "to": "home", "lower": 60}],
+            "contingents": [{"from": "go", "to": "drive:end", "lower": 10, "upper": 20, "delay": [1, 5]}]}"#,
+        Scope::Starts,
+        0.1,
+    );
+    executive.handle_timeout(second(26));
+    let end = executive.network().find("drive:end").unwrap();
+    executive.handle_news(second(40), end);
+    plan_anew(&mut executive, second(40));
+    let said = warnings(&mut executive).join("\n");
+    assert!(said.contains("its news was to come by 25 s"), "{said}");
+    assert!(said.contains("too late: it was to come by 25 s"), "{said}");
+    let happened = executive.rows(end)[0].happened.unwrap();
+    // Either the drive took longer, or its news did.
+    assert_eq!((happened.0.0.to_string(), happened.1.0.to_string()), ("10".to_string(), "39".to_string()));
+}
+
+#[test]
+fn news_that_counts_as_of_another_time_is_told() {
+    let mut executive = executive();
+    let end = drive(&mut executive);
+    assert_eq!(executive.handle_news(second(11), end), Answer::Accepted);
+    assert!(!std::iter::from_fn(|| executive.poll_output()).any(|output| matches!(output, Output::Note(_))));
+    let mut executive = executive_of(
+        r#"{"format": "kirk-network/1", "origin": "go", "events": ["go", "end", "home"],
+            "requirements": [{"from": "end", "to": "home", "lower": 10}],
+            "contingents": [{"from": "go", "to": "end", "lower": 10, "upper": 20}]}"#,
+        Scope::Starts,
+        0.1,
+    );
+    let end = executive.network().find("end").unwrap();
+    assert_eq!(executive.handle_news(millis(9950), end), Answer::Accepted);
+    let told = std::iter::from_fn(|| executive.poll_output()).find_map(|output| match output {
+        Output::Note(text) => Some(text),
+        _ => None,
+    });
+    let told = told.unwrap();
+    assert!(told.contains("at 9.95 s counts as of 10 s, the earliest the model allows"), "{told}");
+}
+
+#[test]
+fn what_was_never_confirmed_is_not_listed_as_dispatched() {
+    let mut executive = executive_of(
+        r#"{"format": "kirk-network/1", "origin": "a:start", "events": ["a:start", "a:end"],
+            "requirements": [{"from": "a:start", "to": "a:end", "lower": 1, "upper": 2}]}"#,
+        Scope::Starts,
+        0.1,
+    );
+    executive.handle_sent(Time::ZERO, "run/a:start");
+    executive.handle_failed(millis(10), "run/a:start", "no", false);
+    executive.handle_timeout(second(1));
+    assert_eq!(executive.failure().unwrap().reason, "driver-failed");
+    let rows = executive.execution(second(1), true).rows;
+    assert!(rows.iter().all(|row| row.event != "a:start"), "{rows:?}");
 }

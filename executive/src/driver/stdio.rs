@@ -264,7 +264,7 @@ fn listen(
                 Observed::Several(events) => events,
             };
             let answers = answers.clone();
-            desk.news(
+            desk.report(
                 names,
                 Box::new(move |answer| {
                     // The driver may be gone by now.

@@ -113,6 +113,8 @@ fn kind(happening: &Happening) -> &'static str {
         Happening::Fixed { .. } => "fixed",
         Happening::Failed { .. } => "failed",
         Happening::Warning { .. } => "warning",
+        Happening::Note { .. } => "note",
+        Happening::Ignored { .. } => "ignored",
         Happening::Over { .. } => "over",
     }
 }

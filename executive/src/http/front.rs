@@ -43,7 +43,7 @@ impl Front {
 
     /// What became of news.
     pub(super) async fn news(&self, names: Vec<String>) -> Result<AnswerNews, Silence> {
-        self.in_time(self.ask(|reply| self.desk.news(names, reply))).await
+        self.in_time(self.ask(|reply| self.desk.report(names, reply))).await
     }
 
     /// The execution as it stands, in one line of JSON.

@@ -1,5 +1,7 @@
 //! Groups of nodes at fixed distances from one another.
 
+use std::cmp::Reverse;
+
 use petgraph::algo::kosaraju_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
 
@@ -14,8 +16,8 @@ pub(crate) struct Rigid {
 }
 
 impl Rigid {
-    /// The groups of these edges; the potentials must fit.
-    pub(crate) fn new(stnu: &Stnu, edges: &[Edge], potential: &[i64]) -> Rigid {
+    /// The groups of these edges; the potentials must fit. Of the nodes that could lead a group that of the least rank does.
+    pub(crate) fn new(stnu: &Stnu, edges: &[Edge], potential: &[i64], rank: &[u32]) -> Rigid {
         // On a cycle of weight 0 every edge is tight, and every cycle of tight edges has weight 0.
         let tight = edges
             .iter()
@@ -32,8 +34,9 @@ impl Rigid {
         for group in kosaraju_scc(&graph) {
             let nodes = group.iter().map(|node| node.index());
             // t_v - t_leader = potential(leader) - potential(v). A contingent event leads before what is simultaneous.
-            let leader =
-                nodes.clone().max_by_key(|&node| (potential[node], ending[node] != NONE, usize::MAX - node));
+            let leader = nodes
+                .clone()
+                .max_by_key(|&node| (potential[node], ending[node] != NONE, Reverse((rank[node], node))));
             let Some(leader) = leader else { continue };
             for node in nodes {
                 rigid.leader[node] = leader as u32;

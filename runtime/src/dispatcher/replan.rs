@@ -50,7 +50,7 @@ impl Dispatcher {
             self.fix_heard();
             return Adoption::NoPlan;
         };
-        self.agenda = agenda(&reduction, &net, &self.confirmed, self.settings.lead);
+        self.agenda = agenda(&reduction, &net, |event| self.settings.lead_of(self.is_carried_out(event)));
         self.reduction = reduction;
         self.take_up(rebuilt.now.as_micros());
         Adoption::Followed

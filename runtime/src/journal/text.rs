@@ -203,6 +203,7 @@ mod tests {
             run: "r".into(),
             settings: Settings::default(),
             handovers: Vec::new(),
+            driver: false,
             patience: Patience { first: Duration::ZERO, most: Duration::ZERO },
         };
         let shell = RawValue::from_string("null".into()).unwrap();

@@ -1,0 +1,132 @@
+//! What our events go through: due, dispatched, in flight until a driver has confirmed them, executed; or too late for that.
+
+use kirk_network::{EventId, Time};
+
+use super::{Dispatch, Dispatcher, Missed};
+use crate::execution::How;
+
+/// A dispatched event that nobody has confirmed yet.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct InFlight {
+    pub(super) event: EventId,
+    pub(super) node: u32,
+    pub(super) due: i64,
+    /// Since when it is, if it was confirmed before it is due: until then news may still bring it forward.
+    pub(super) executed: Option<i64>,
+}
+
+impl Dispatcher {
+    /// When a node that is due counts as executed, if it is taken in hand now.
+    pub(super) fn executed_at(&self, node: u32) -> i64 {
+        let due = self.agenda.due(node);
+        let carried_out = self.is_carried_out(self.reduction.event_of[node as usize]);
+        if carried_out { self.recorded(due, self.now, self.agenda.upper(node)) } else { due }
+    }
+
+    /// The next event that was confirmed before it is due, and when it counts as executed: then, or when its window closes.
+    pub(super) fn next_early(&self) -> Option<(i64, usize)> {
+        let early = self.in_flight.iter().enumerate().filter_map(|(index, flight)| {
+            let since = flight.executed?;
+            Some((flight.due.min(self.agenda.upper(flight.node)).max(since), index))
+        });
+        early.min()
+    }
+
+    /// An event in flight was executed, `at` some time up to now. What follows it can go on. One that was executed before it
+    /// was due stays in flight until it is.
+    pub fn handle_executed(&mut self, now: Time, event: EventId, at: Time) {
+        self.now = self.now.max(now.as_micros());
+        let Some(found) = self.in_flight.iter().position(|flight| flight.event == event) else { return };
+        let InFlight { node, due, .. } = self.in_flight[found];
+        self.version += 1;
+        if due > self.now {
+            self.in_flight[found].executed = Some(at.as_micros());
+            return;
+        }
+        self.in_flight.remove(found);
+        let time = self.recorded(due, at.as_micros(), self.agenda.upper(node));
+        self.executed(event, node, due, time);
+    }
+
+    pub(super) fn executed(&mut self, event: EventId, node: u32, due: i64, time: i64) {
+        if self.in_time(due, time, node) {
+            self.fix(event, time, How::Dispatched);
+            self.start(node, time);
+        }
+    }
+
+    /// An event in flight cannot be executed any more: the execution has failed.
+    pub fn handle_failed(&mut self, now: Time, event: EventId) {
+        self.now = self.now.max(now.as_micros());
+        if let Some(found) = self.in_flight.iter().position(|flight| flight.event == event) {
+            let InFlight { node, due, .. } = self.in_flight.remove(found);
+            self.version += 1;
+            self.miss(event, due, self.now, self.agenda.upper(node));
+        }
+    }
+
+    /// The latest time at which an event in flight can be executed, if there is one.
+    pub fn latest(&self, event: EventId) -> Option<Time> {
+        let flight = self.in_flight.iter().find(|flight| flight.event == event)?;
+        Some(self.agenda.upper(flight.node)).filter(|&upper| upper < i64::MAX).map(Time::from_micros)
+    }
+
+    /// True if somebody carries an event out.
+    pub fn is_carried_out(&self, event: EventId) -> bool {
+        self.carried_out[event.index()]
+    }
+
+    /// True if anything is in flight.
+    pub fn has_in_flight(&self) -> bool {
+        !self.in_flight.is_empty()
+    }
+
+    /// True from the dispatch of an event until it counts as executed.
+    pub fn is_in_flight(&self, event: EventId) -> bool {
+        self.in_flight.iter().any(|flight| flight.event == event)
+    }
+
+    pub(super) fn execute(&mut self, time: i64, node: u32) {
+        let due = self.agenda.due(node);
+        if !self.in_time(due, time, node) {
+            return;
+        }
+        let event = self.reduction.event_of[node as usize];
+        self.version += 1;
+        self.dispatches.push_back(Dispatch { event, time: Time::from_micros(due) });
+        if self.settings.confirmed && self.is_carried_out(event) {
+            self.agenda.take(node);
+            self.in_flight.push(InFlight { event, node, due, executed: None });
+        } else {
+            self.fix(event, time, How::Dispatched);
+            self.start(node, time);
+        }
+    }
+
+    /// When an event that was due and is executed `at` some time is recorded: when due, unless that is too long ago. What
+    /// is late for its window by no more than is allowed counts as just in time.
+    pub(super) fn recorded(&self, due: i64, at: i64, latest: i64) -> i64 {
+        let lateness = self.settings.lateness.as_micros();
+        if at.saturating_sub(due) <= lateness {
+            due
+        } else if at > latest && at.saturating_sub(latest) <= lateness {
+            latest
+        } else {
+            at
+        }
+    }
+
+    /// False, and the end of it all, if an event would be executed after its window.
+    pub(super) fn in_time(&mut self, due: i64, time: i64, node: u32) -> bool {
+        let latest = self.agenda.upper(node);
+        if time > latest {
+            self.miss(self.reduction.event_of[node as usize], due, time, latest);
+        }
+        time <= latest
+    }
+
+    pub(super) fn miss(&mut self, event: EventId, due: i64, time: i64, latest: i64) {
+        let [due, time, latest] = [due, time, latest].map(Time::from_micros);
+        self.missed = Some(Missed { event, time, due, latest });
+    }
+}

@@ -26,8 +26,8 @@ pub(crate) struct Input {
 enum Content {
     /// RMPL: how far the compiler got, and if to a network, where its constraints come from and where its program is named.
     Program { compilation: Box<Compilation>, origins: Option<(Origins, Span)> },
-    /// A network: where its constraints stand.
-    Network(SourceMap),
+    /// A network: where its constraints stand, and whether its name stands there or is that of its file.
+    Network { places: SourceMap, named: bool },
     /// Nothing that could be read.
     Unread,
 }
@@ -238,8 +238,8 @@ fn network(name: &str, text: String, reader: Reader) -> Input {
     let sources = vec![Source::new(name, text)];
     match read {
         Ok((network, places)) => {
-            let (content, network) = (Content::Network(places), Some(named(network, name)));
-            Input { sources, diagnostics: Vec::new(), content, network }
+            let content = Content::Network { places, named: !network.name().is_empty() };
+            Input { sources, diagnostics: Vec::new(), content, network: Some(named(network, name)) }
         }
         Err(problems) => {
             let told = |problem: ReadProblem| {
@@ -290,7 +290,7 @@ impl Input {
 
     /// Where its constraints stand, if it is a network.
     pub(crate) fn places(&self) -> Option<&SourceMap> {
-        if let Content::Network(places) = &self.content { Some(places) } else { None }
+        if let Content::Network { places, .. } = &self.content { Some(places) } else { None }
     }
 
     /// Refuses options that choose among programs: a network has none.
@@ -305,6 +305,12 @@ impl Input {
             );
             self.network = None;
         }
+    }
+
+    /// True if a record of this program may be of it. A network without a name may be a copy of another file.
+    pub(crate) fn may_be(&self, program: &str, selection: &Selection) -> bool {
+        let nameless = matches!(self.content, Content::Network { named: false, .. });
+        nameless || self.program(selection).eq_ignore_ascii_case(program)
     }
 
     /// What the network is called: the program it is of, or its own name.

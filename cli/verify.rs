@@ -6,7 +6,7 @@ use kirk_compiler::{Code, Diagnostic, Source, Span};
 use kirk_network::json::{ReadProblem, locate};
 use kirk_runtime::execution::FORMAT;
 use kirk_runtime::journal::{self, is_journal};
-use kirk_runtime::{Execution, replay, verify as check};
+use kirk_runtime::{Execution, Violation, lucky, replay, verify as check};
 use serde::Serialize;
 
 use crate::args::{Common, Selection, TextOrJson, Verify};
@@ -40,23 +40,33 @@ pub(crate) fn verify(arguments: &Verify, common: &Common) -> io::Result<Status> 
     Reporter::new(&input.sources).show(&input.diagnostics, common)?;
     let (Some(execution), Some(network)) = (execution, &input.network) else { return Ok(Status::Wrong) };
     let file = arguments.files.join(" ");
-    let violations = check(network, &execution);
+    let mut violations = check(network, &execution);
+    if !input.may_be(&execution.program, &selection) {
+        let (theirs, ours) = (&execution.program, input.program(&selection));
+        let message = format!("this is a record of `{theirs}`, and the mission is `{ours}`");
+        violations.insert(0, Violation { event: None, message });
+    }
+    let lucky = if violations.is_empty() { lucky(network, &execution) } else { Vec::new() };
     match arguments.format {
         TextOrJson::Json => {
-            let violations =
-                violations.iter().map(|v| ViolationJson { event: v.event.as_deref(), message: &v.message });
             let document = VerifyJson {
                 format: "kirk-verify/1",
                 execution: &arguments.execution,
                 file: &file,
-                verified: violations.len() == 0,
-                violations: violations.collect(),
+                verified: violations.is_empty(),
+                violations: violations.iter().map(told).collect(),
+                lucky: lucky.iter().map(told).collect(),
             };
             print(&line(&document)?)?;
         }
         TextOrJson::Text => {
             for violation in &violations {
                 print_line(&format!("violation: {}", violation.message))?;
+            }
+            for Violation { message, .. } in &lucky {
+                print_line(&format!(
+                    "note: only as it truly happened; by what was heard Nature could have broken this: {message}"
+                ))?;
             }
             let verdict = match violations.len() {
                 0 => "satisfies every constraint of".to_string(),
@@ -112,6 +122,13 @@ struct VerifyJson<'a> {
     file: &'a str,
     verified: bool,
     violations: Vec<ViolationJson<'a>>,
+    /// What holds only as it truly happened: by what was heard it might not have.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    lucky: Vec<ViolationJson<'a>>,
+}
+
+fn told(violation: &Violation) -> ViolationJson<'_> {
+    ViolationJson { event: violation.event.as_deref(), message: &violation.message }
 }
 
 #[derive(Serialize)]

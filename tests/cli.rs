@@ -361,12 +361,11 @@ fn verify_finds_what_was_changed_in_a_record() {
         record["rows"].as_array().unwrap().iter().position(|row| row["event"] == event).unwrap()
     };
     let mut late = original.clone();
-    let row = row_of(&late, "robot-poweroff:end");
-    late["rows"][row]["time"] = 500.into();
-    late["rows"][row]["true"] = 500.into();
-    let main = row_of(&late, "main:end");
-    late["rows"][main] = late["rows"][row].clone();
-    late["rows"][main]["event"] = "main:end".into();
+    for event in ["robot-poweroff:end", "main:end"] {
+        let row = row_of(&late, event);
+        late["rows"][row]["time"] = 500.into();
+        late["rows"][row]["true"] = 500.into();
+    }
     let (status, said) = verify(&late);
     assert_eq!(status, Some(1));
     assert!(said.contains("at most 480 s after `main:start`"), "{said}");
@@ -384,6 +383,48 @@ fn verify_finds_what_was_changed_in_a_record() {
         impossible["rows"][row]["true"] = 31.into();
     }
     assert!(verify(&impossible).1.contains("outside of its bounds [15, 30]"));
+    let mut makespan = original.clone();
+    makespan["makespan"] = 600.into();
+    assert!(verify(&makespan).1.contains("the makespan is said to be 600 s"));
+    let mut order = original.clone();
+    order["rows"].as_array_mut().unwrap().rotate_left(1);
+    assert!(verify(&order).1.contains("not in time order"));
+}
+
+#[test]
+fn a_record_of_another_mission_is_refused_and_one_that_was_lucky_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_string();
+    let (network, record) = (path("luck.json"), path("record.json"));
+    fs::write(
+        &network,
+        r#"{"format": "kirk-network/1", "name": "luck", "origin": "a", "events": ["a", "b", "c"],
+            "requirements": [{"from": "b", "to": "c", "lower": 0, "upper": 1}],
+            "contingents": [{"from": "a", "to": "b", "lower": 1, "upper": 5, "delay": [0, 10]}]}"#,
+    )
+    .unwrap();
+    let of = |program: &str| {
+        let rows = r#"[{"event": "a", "time": 0, "how": "dispatched", "true": 0},
+            {"event": "b", "time": 5, "how": "observed", "true": 4, "observed": 5, "happened": [1, 5]},
+            {"event": "c", "time": 5, "how": "dispatched", "true": 5}]"#;
+        let text = format!(
+            r#"{{"format": "kirk-execution/1", "program": "{program}", "outcome": "completed", "makespan": 5, "rows": {rows}}}"#
+        );
+        fs::write(&record, text).unwrap();
+        let output = kirk(&["verify", &record, &network, "-q"]);
+        (output.status.code(), stdout(&output))
+    };
+    let (status, said) = of("luck");
+    assert_eq!(status, Some(0), "{said}");
+    assert!(
+        said.starts_with(
+            "note: only as it truly happened; by what was heard Nature could have broken this: `c`"
+        ),
+        "{said}"
+    );
+    let (status, said) = of("another");
+    assert_eq!(status, Some(1));
+    assert!(said.contains("this is a record of `another`, and the mission is `luck`"), "{said}");
 }
 
 #[test]

@@ -12,7 +12,10 @@ use crate::trees::{Trees, link_index};
 
 impl Reduction {
     /// What a negative cycle of the plain STNU says of the network it is from. Whether it is conservative is not said.
-    pub fn conflict(&self, network: &Network, cycle: &Cycle) -> Conflict {
+    ///
+    /// # Errors
+    /// [`TooLarge`] if what the cycle takes from the bounds adds up to more than 64-bit microseconds can hold.
+    pub fn conflict(&self, network: &Network, cycle: &Cycle) -> Result<Conflict, TooLarge> {
         let mut tally = Tally { network, times: BTreeMap::new() };
         for &(step, times) in &cycle.steps {
             match step {
@@ -36,7 +39,7 @@ impl Violation {
         tally.add(self.source.part(), 1);
         tally.path(meet, self.to, Part::LinkUpper, 1);
         tally.path(meet, self.from, Part::LinkLower, 1);
-        Ok(tally.conflict())
+        tally.conflict()
     }
 }
 
@@ -128,20 +131,22 @@ impl Tally<'_> {
         }
     }
 
-    fn conflict(self) -> Conflict {
+    fn conflict(self) -> Result<Conflict, TooLarge> {
         let mut members = Vec::new();
-        let mut total = 0;
+        let mut total = 0_i64;
         for (&part, &times) in &self.times {
             let bound = signed_bound(self.network, part);
-            total += times * bound;
+            let amount = times.checked_mul(bound).ok_or(TooLarge)?;
+            total = total.checked_add(amount).ok_or(TooLarge)?;
             // Opposite uses of one bound cancel, and news at once is nobody's fault.
             let at_once = bound == 0 && matches!(part, Part::DelayMin(_) | Part::DelayMax(_));
             if times > 0 && !at_once {
-                let amount = Duration::from_micros(times * bound);
-                members.push(Share { part, times: u32::try_from(times).unwrap_or(u32::MAX), amount });
+                let (times, amount) =
+                    (u32::try_from(times).unwrap_or(u32::MAX), Duration::from_micros(amount));
+                members.push(Share { part, times, amount });
             }
         }
-        Conflict { members, total: Duration::from_micros(total), conservative: false }
+        Ok(Conflict { members, total: Duration::from_micros(total), conservative: false })
     }
 }
 
@@ -151,5 +156,28 @@ fn signed_bound(network: &Network, part: Part) -> i64 {
     match part {
         Part::RequirementLower(_) | Part::LinkUpper(_) | Part::DelayMax(_) => -bound,
         _ => bound,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::Tally;
+    use crate::conflict::Part;
+    use crate::json;
+    use crate::stnu::TooLarge;
+
+    #[test]
+    fn a_sum_beyond_what_can_be_held_is_an_error_and_no_other_number() {
+        let network = json::read(
+            r#"{"format": "kirk-network/1", "origin": "a", "events": ["a", "b"],
+                "requirements": [{"from": "a", "to": "b", "lower": 9999999999}]}"#,
+        );
+        let network = network.expect("a valid network");
+        let tally =
+            |times| Tally { network: &network, times: BTreeMap::from([(Part::RequirementLower(0), times)]) };
+        assert!(tally(900).conflict().is_ok());
+        assert_eq!(tally(1200).conflict(), Err(TooLarge));
     }
 }

@@ -64,7 +64,7 @@ fn first_conflict(
         Err(ReduceError::TooLarge) => Err(TooLarge),
         Err(ReduceError::Never(violation)) => Ok(Some(violation.conflict(network)?)),
         Ok(reduction) => {
-            Ok(negative_cycle(&reduction.stnu)?.map(|cycle| reduction.conflict(network, &cycle)))
+            negative_cycle(&reduction.stnu)?.map(|cycle| reduction.conflict(network, &cycle)).transpose()
         }
     }
 }

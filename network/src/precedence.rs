@@ -9,26 +9,27 @@ use std::collections::BinaryHeap;
 use petgraph::algo::kosaraju_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
 
-use crate::model::{EventId, Network};
+use crate::model::{EventId, Network, Requirement};
 use crate::stnu::{Rows, Stnu};
-use crate::time::{Bound, Duration};
+use crate::time::Duration;
 
 /// For every event of a network a number, less than that of any other event that must not come before it. Where nothing is
 /// written, the one whose `key` is less gets the lesser number, as far as that goes.
 pub fn precedence(network: &Network, key: impl Fn(EventId) -> u32) -> Vec<u32> {
-    let no_less = |bound: Bound| bound.finite().is_some_and(|bound| bound >= Duration::ZERO);
-    let no_more = |bound: Bound| bound.finite().is_some_and(|bound| bound <= Duration::ZERO);
-    let mut pairs = Vec::new();
-    for requirement in network.requirements() {
-        let (from, to) = (requirement.from.index() as u32, requirement.to.index() as u32);
-        pairs.extend(no_less(requirement.lower).then_some((to, from)));
-        pairs.extend(no_more(requirement.upper).then_some((from, to)));
-    }
+    let mut pairs: Vec<(u32, u32)> = written_pairs(network)
+        .map(|(later, earlier)| (later.index() as u32, earlier.index() as u32))
+        .collect();
     // Nothing comes before the origin, and Nature takes no time back.
     let origin = network.origin().index() as u32;
     pairs.extend((0..network.events().len() as u32).map(|event| (event, origin)));
     pairs.extend(network.contingents().iter().map(|link| (link.to.index() as u32, link.from.index() as u32)));
     ranks(network.events().len() as u32, &pairs, |event| key(EventId(event)))
+}
+
+/// The pairs (later, earlier) of events of which a requirement says that one must not come before the other.
+pub fn written_pairs(network: &Network) -> impl Iterator<Item = (EventId, EventId)> {
+    let edges = network.requirements().iter().flat_map(Requirement::edges).flatten();
+    edges.filter(|&(.., weight)| weight <= Duration::ZERO).map(|(later, earlier, _)| (later, earlier))
 }
 
 /// The pairs (later, earlier) of nodes of which one must not come before the other.

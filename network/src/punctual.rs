@@ -123,7 +123,7 @@ impl Punctuality {
             tried.stnu.edges.push(edge);
             tried.sources.push(Source::AfterOrigin);
             let Some(cycle) = negative_cycle(&tried.stnu)? else { return Ok(None) };
-            let conflict = self.merged.unmerge(&tried.conflict(&self.merged.network, &cycle), network);
+            let conflict = self.merged.unmerge(&tried.conflict(&self.merged.network, &cycle)?, network);
             for share in conflict.members {
                 let known =
                     shares.entry(share.part).or_insert(Share { times: 0, amount: Duration::ZERO, ..share });

@@ -76,4 +76,4 @@ pub use plan::{NoPlan, Plan};
 pub use rebuild::{Rebuild, Rebuilt};
 pub use replay::{Replay, recover, replay};
 pub use simulate::{Simulation, simulate};
-pub use verify::{Violation, verify};
+pub use verify::{Violation, lucky, verify};

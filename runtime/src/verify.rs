@@ -8,6 +8,7 @@
 use std::collections::{BTreeMap, VecDeque};
 
 use kirk_network::merge::merge;
+use kirk_network::precedence::{precedence, written_pairs};
 use kirk_network::{Bound, EventId, Network};
 
 use crate::execution::{Execution, FORMAT, How, Outcome, Row};
@@ -19,6 +20,17 @@ pub struct Violation {
     pub event: Option<String>,
     /// What is wrong, with the numbers.
     pub message: String,
+}
+
+/// What of a network does not hold in every course of Nature that agrees with what was heard, though it held in the one that is
+/// recorded as true: the execution was lucky. Empty for a record that is wrong in itself.
+pub fn lucky(network: &Network, execution: &Execution) -> Vec<Violation> {
+    if execution.rows.iter().all(|row| row.truth.is_none()) || !verify(network, execution).is_empty() {
+        return Vec::new();
+    }
+    let mut heard = execution.clone();
+    heard.rows.iter_mut().for_each(|row| row.truth = None);
+    verify(network, &heard)
 }
 
 /// Checks a recorded execution against a network (as written, not merged). An empty list means it is right.
@@ -97,6 +109,12 @@ impl Verifier<'_> {
                 Some(event) => self.take(event, row),
             }
         }
+        self.read_order(execution);
+        let untold = execution.rows.iter().find(|row| row.truth.is_none());
+        if let (Some(row), true) = (untold, execution.rows.iter().any(|row| row.truth.is_some())) {
+            let message = format!("`{}` does not say when it truly happened, where others do", row.event);
+            self.say(Some(&row.event), message);
+        }
         for event in self.network.event_ids() {
             let names = self.network.events()[event.index()].names.iter();
             for name in names.filter(|name| !name.internal) {
@@ -104,6 +122,41 @@ impl Verifier<'_> {
                     self.say(Some(&name.text), format!("`{}` has no row", name.text));
                 }
             }
+        }
+    }
+
+    /// The rows are in time order, and what is written to precede something else comes before it at one time.
+    fn read_order(&mut self, execution: &Execution) {
+        let when = |row: &Row| row.time.or(row.happened.map(|(_, high)| high)).map(|time| time.0.as_micros());
+        let mut rows: Vec<Option<usize>> = vec![None; self.facts.len()];
+        let mut last: Option<(&Row, i64)> = None;
+        for (at, row) in execution.rows.iter().enumerate() {
+            let time = when(row).unwrap_or(i64::MAX);
+            if let Some((before, _)) = last.filter(|&(_, last)| time < last) {
+                let message = format!(
+                    "the rows are not in time order: `{}` is listed after `{}`",
+                    row.event, before.event
+                );
+                self.say(Some(&row.event), message);
+            }
+            last = Some((row, time));
+            if let Some(event) = self.network.find(&row.event) {
+                rows[event.index()].get_or_insert(at);
+            }
+        }
+        // Events that are written to precede one another are one moment.
+        let rank = precedence(self.network, |_| 0);
+        let row = |event: EventId| rows[event.index()].map(|at| (at, &execution.rows[at]));
+        let mut wrong = Vec::new();
+        for (to, from) in written_pairs(self.network) {
+            let (Some((at, earlier)), Some((then, later))) = (row(from), row(to)) else { continue };
+            let ordered = rank[from.index()] < rank[to.index()];
+            if ordered && at > then && earlier.time.is_some() && earlier.time == later.time {
+                wrong.push([from, to].map(|event| self.network.label(event).to_string()));
+            }
+        }
+        for [from, to] in wrong {
+            self.say(Some(&from), format!("`{from}` must not come after `{to}`, but is listed after it"));
         }
     }
 
@@ -150,7 +203,8 @@ impl Verifier<'_> {
         let agrees = match (fact.how, fact.time, fact.observed) {
             (How::Dispatched, ..) => false,
             (How::Observed, Some(time), Some(observed)) => time == observed,
-            (How::Buffered, Some(time), Some(observed)) => time >= observed,
+            // What is acted on when it is heard is not held back.
+            (How::Buffered, Some(time), Some(observed)) => time > observed,
             (How::Imagined, Some(time), observed) => observed.is_none_or(|observed| observed >= time),
             (How::Never, None, observed) => observed.is_none(),
             _ => false,
@@ -272,9 +326,8 @@ impl Verifier<'_> {
     /// What the record claims to follow from itself: where each event must have happened, and when all was over.
     fn check_claims(&mut self, execution: &Execution) {
         let seconds = kirk_network::Duration::from_micros;
-        // The last event was over when it was executed, or at the latest when it had happened in any case.
+        // The last event was over when it was executed or acted on, or had happened in any case.
         let (mut over, mut last) = (0, None);
-        let mut at_most = 0;
         let all_recorded = self.network.event_ids().all(|event| self.facts[event.index()].is_some());
         for row in &execution.rows {
             let Some(event) = self.network.find(&row.event) else { continue };
@@ -294,15 +347,13 @@ impl Verifier<'_> {
                 );
                 self.say(Some(&row.event), message);
             }
-            let end = fact.time.or(known.map(|(_, high)| high)).unwrap_or_default();
+            let end = fact.time.max(known.map(|(_, high)| high)).unwrap_or_default();
             if end > over {
                 (over, last) = (end, Some(row.event.as_str()));
             }
-            let latest = self.latest.get(event.index()).copied().flatten().unwrap_or(i64::MAX);
-            at_most = at_most.max(end).max(fact.observed.unwrap_or_default()).max(latest);
         }
         // Events without a row may come after all the others.
-        if self.makespan < over || all_recorded && self.makespan > at_most {
+        if self.makespan < over || all_recorded && self.makespan > over {
             let message = format!(
                 "the makespan is said to be {} s, but the last event, `{}`, came at {} s",
                 seconds(self.makespan),

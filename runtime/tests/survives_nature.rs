@@ -9,7 +9,9 @@ mod oracle;
 
 use kirk_network::json::Seconds;
 use kirk_network::{Duration, EventId, Network, Time};
-use kirk_runtime::{Execution, How, Outcome, Plan, Simulation, Strategy, Temper, simulate, verify};
+use kirk_runtime::{
+    Execution, How, Outcome, Plan, Row, Simulation, Strategy, Temper, lucky, simulate, verify,
+};
 use oracle::order::precedes;
 use oracle::random::{self, Shape};
 
@@ -73,9 +75,7 @@ fn violation(network: &Network, execution: &Execution) -> Option<String> {
     }
     // The verifier finds the same from what was recorded, and from what was heard alone.
     let mut heard = execution.clone();
-    for row in heard.rows.iter_mut().filter(|row| row.how != How::Dispatched) {
-        row.truth = None;
-    }
+    heard.rows.iter_mut().for_each(|row| row.truth = None);
     for recorded in [execution, &heard] {
         let text = serde_json::to_string(recorded).unwrap();
         let read: Execution = serde_json::from_str(&text).unwrap();
@@ -226,10 +226,14 @@ fn the_verifier_finds_every_decision_that_breaks_a_requirement() {
         let moved = (time + random.within(-5..=5) * 1_000_000).max(0);
         row.time = Some(Seconds(Duration::from_micros(moved)));
         row.truth = row.time;
-        // Later than that, silence would say more, and the record would have to as well.
-        if row.time > Some(execution.makespan) {
+        // Later than that, silence would say more, and the record would have to as well; and at the time of another event its
+        // place in the record would matter.
+        let when = |row: &Row| row.time.or(row.happened.map(|(_, high)| high)).map(|time| time.0.as_micros());
+        let beside = execution.rows.iter().filter(|row| when(row) == Some(moved)).count();
+        if moved > execution.makespan.0.as_micros() || beside > 1 {
             continue;
         }
+        execution.rows.sort_by_key(|row| when(row).unwrap_or(i64::MAX));
         if broken_requirement(network, &execution).is_some() {
             broken += 1;
             assert!(!verify(network, &execution).is_empty(), "seed {seed}: {}", random::describe(network));
@@ -254,6 +258,82 @@ fn every_decision_is_known_to_be_over_in_time_order() {
         }
         assert_eq!(execution.rows[0].time.map(|time| time.0.as_micros()), Some(Time::ZERO.as_micros()));
     }
+}
+
+/// What becomes of a record when one thing in it is changed, and what the verifier has to say of that.
+type Slip = (&'static str, fn(&mut Execution) -> bool);
+
+const SLIPS: [Slip; 5] = [
+    ("not in time order", |execution| {
+        let later = (1..execution.rows.len()).find(|&at| {
+            let pair = (execution.rows[at - 1].time, execution.rows[at].time);
+            matches!(pair, (Some(one), Some(other)) if one < other)
+        });
+        later.inspect(|&at| execution.rows.swap(at - 1, at)).is_some()
+    }),
+    ("do not fit `buffered`", |execution| {
+        let at_once = |row: &&mut Row| row.how == How::Observed && row.time == row.observed.flatten();
+        execution.rows.iter_mut().find(at_once).map(|row| row.how = How::Buffered).is_some()
+    }),
+    ("does not say when it truly happened", |execution| {
+        execution.rows.last_mut().map(|row| row.truth = None).is_some()
+    }),
+    ("the makespan is said to be", |execution| {
+        execution.makespan = Seconds(Duration::from_micros(execution.makespan.0.as_micros() + 1));
+        true
+    }),
+    ("has no row", |execution| execution.rows.pop().is_some()),
+];
+
+#[test]
+fn the_verifier_names_every_slip_in_a_record() {
+    let mut found = [0_u64; SLIPS.len()];
+    for seed in 0..cases(500) {
+        let network = random::network(seed, &shapes()[(seed % 4) as usize]);
+        let Ok(plan) = Plan::new(&network) else { continue };
+        for (at, (said, slip)) in SLIPS.iter().enumerate() {
+            let mut execution = run(&plan, Strategy::Optimistic, Temper::Random, seed);
+            if !slip(&mut execution) {
+                continue;
+            }
+            found[at] += 1;
+            let messages: Vec<String> =
+                verify(plan.network(), &execution).into_iter().map(|violation| violation.message).collect();
+            let named = messages.iter().any(|message| message.contains(said));
+            assert!(named, "seed {seed}: {said} is not among {messages:#?}\n{:#?}", execution.rows);
+        }
+    }
+    assert!(found.iter().all(|&found| found * 20 > cases(500)), "{found:?}");
+}
+
+#[test]
+fn what_held_by_luck_alone_is_told() {
+    // News of `b` is 0 to 10 s late, and `c` is to come within 1 s of it: nobody could know, but somebody was lucky.
+    let network = kirk_network::json::read(
+        r#"{"format": "kirk-network/1", "name": "luck", "origin": "a", "events": ["a", "b", "c"],
+            "requirements": [{"from": "b", "to": "c", "lower": 0, "upper": 1}],
+            "contingents": [{"from": "a", "to": "b", "lower": 1, "upper": 5, "delay": [0, 10]}]}"#,
+    )
+    .unwrap();
+    let row = |event: &str, time: &str, how: &str, truth: &str, rest: &str| {
+        format!(r#"{{"event": "{event}", "time": {time}, "how": "{how}", "true": {truth}{rest}}}"#)
+    };
+    let rows = [
+        row("a", "0", "dispatched", "0", ""),
+        row("b", "5", "observed", "4", r#", "observed": 5, "happened": [1, 5]"#),
+        row("c", "5", "dispatched", "5", ""),
+    ];
+    let text = format!(
+        r#"{{"format": "kirk-execution/1", "program": "luck", "outcome": "completed", "makespan": 5, "rows": [{}]}}"#,
+        rows.join(", ")
+    );
+    let execution: Execution = serde_json::from_str(&text).unwrap();
+    assert_eq!(verify(&network, &execution), []);
+    let lucky = lucky(&network, &execution);
+    assert!(
+        lucky.len() == 1 && lucky[0].message.contains("`c` must come at most 1 s after `b`"),
+        "{lucky:?}"
+    );
 }
 
 #[test]

@@ -346,7 +346,7 @@ fn conflict_of(merged: &Network, parts: &[Part]) -> Option<(Conflict, Vec<Part>)
     let conflict = match reduce(merged) {
         Ok(reduction) => {
             let cycle = negative_cycle(&reduction.stnu).ok().flatten()?;
-            reduction.conflict(merged, &cycle)
+            reduction.conflict(merged, &cycle).ok()?
         }
         Err(ReduceError::Never(violation)) => violation.conflict(merged).ok()?,
         Err(ReduceError::TooLarge) => return None,

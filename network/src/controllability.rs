@@ -14,7 +14,7 @@ mod potential;
 mod record;
 
 use crate::radix::RadixQueue;
-use crate::stnu::{Edge, LIMIT, NONE, Rows, Stnu, TooLarge, add, within_limit};
+use crate::stnu::{Edge, LIMIT, NONE, Rows, Stnu, TooLarge, within_limit};
 
 /// One step along an edge of a cycle; the numbers are indices into [`Stnu::edges`] and [`Stnu::links`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -374,7 +374,7 @@ impl<'a> Search<'a> {
                 edge = self.before_in[edge as usize - self.derived_from];
             }
         }
-        if loops_back && let Some(cycle) = self.negative_from_contingent(link)? {
+        if loops_back && let Some(cycle) = self.negative_from_contingent(link) {
             return Ok(Found::Cycle(cycle));
         }
         self.derive(link)
@@ -388,7 +388,7 @@ impl<'a> Search<'a> {
     /// controllability*, 2006: a cycle is semi-reducible if each of its lower-case edges is followed by such a path);
     /// later the truth is known. So the search forward from C ends at the first node at a negative distance, among the
     /// nodes the backward search went on from: those are the ones that are close enough to wait for C.
-    fn negative_from_contingent(&mut self, link: u32) -> Result<Option<Vec<Move>>, TooLarge> {
+    fn negative_from_contingent(&mut self, link: u32) -> Option<Vec<Move>> {
         let source = self.stnu.links[link as usize].contingent;
         let base = self.node(source).potential;
         let mut via = vec![NONE; self.nodes.len()];
@@ -414,34 +414,33 @@ impl<'a> Search<'a> {
                 moves.reverse();
                 moves.extend(self.way_to_contingent(node, link));
                 moves.push(Move::Upper(link));
-                return Ok(Some(moves));
+                return Some(moves);
             }
-            let mut relax = |search: &mut Search<'a>, edge: EdgeId| -> Result<(), TooLarge> {
+            let mut relax = |search: &mut Search<'a>, edge: EdgeId| {
                 let Edge { to, weight, .. } = search.edges[edge as usize];
-                if to != source && search.node(to).expanded == search.round {
-                    let reduced = add(weight, search.node(to).potential)? - search.node(node).potential;
-                    let key = add(key, reduced)?;
+                // From beyond the limit no way leads back: no distance is below it on the other side.
+                if to != source && search.node(to).expanded == search.round && distance + weight <= LIMIT {
+                    let key = key + weight + search.node(to).potential - search.node(node).potential;
                     if key < keys[to as usize] {
                         keys[to as usize] = key;
                         via[to as usize] = edge;
                         search.queue.push(key, to);
                     }
                 }
-                Ok(())
             };
             for at in 0..self.outgoing.of(node).len() {
-                relax(self, self.outgoing.of(node)[at])?;
+                relax(self, self.outgoing.of(node)[at]);
             }
             for at in 0..self.starting.of(node).len() {
-                relax(self, self.lower_from as u32 + self.starting.of(node)[at])?;
+                relax(self, self.lower_from as u32 + self.starting.of(node)[at]);
             }
             let mut edge = self.derived_out[node as usize];
             while edge != NONE {
-                relax(self, edge)?;
+                relax(self, edge);
                 edge = self.before_out[edge as usize - self.derived_from];
             }
         }
-        Ok(None)
+        None
     }
 
     /// Adds what the finished search implies: an edge to the activation from every node at a distance of at least the

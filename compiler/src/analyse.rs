@@ -7,13 +7,15 @@ mod classes;
 mod expression;
 mod names;
 pub(crate) mod symbols;
+mod unused;
 
-use std::collections::BTreeSet;
+use std::cell::Cell;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::Options;
 use crate::ast::{self, Ident};
 use crate::code::Code;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Edit};
 use crate::form::clip;
 use crate::nearest::nearest;
 use crate::parse::DEFAULT_PACKAGE;
@@ -34,7 +36,11 @@ pub(crate) fn analyse(program: &ast::Program, options: &Options, problems: &mut 
     let numbers = named_numbers(program, &names, problems);
     let labels = labels(program);
     let mut model = Model::default();
-    for definition in &program.programs {
+    let unused = |definition: &ast::ControlProgram| -> Vec<Cell<bool>> {
+        definition.parameters.iter().map(|_| Cell::new(false)).collect()
+    };
+    let used: Vec<Vec<Cell<bool>>> = program.programs.iter().map(unused).collect();
+    for (definition, used) in program.programs.iter().zip(&used) {
         let scope = definition.parameters.iter().map(|parameter| parameter.name.clone()).collect();
         let analyser = Analyser {
             names: &names,
@@ -43,9 +49,17 @@ pub(crate) fn analyse(program: &ast::Program, options: &Options, problems: &mut 
             program,
             definition,
             scope,
+            used,
             problems,
         };
         model.programs.push(analyser.program(&classes));
+    }
+    // What is wrong may be why something is not used.
+    if !problems.has_errors() {
+        for (definition, used) in program.programs.iter().zip(&used) {
+            unused::report_parameters(definition, used, problems);
+        }
+        unused::report_labels(&labels, problems);
     }
     calls::check_recursion(&model, problems);
     model.entry = entry(program, &names, options, problems);
@@ -59,11 +73,13 @@ pub(crate) fn analyse(program: &ast::Program, options: &Options, problems: &mut 
 pub(crate) struct Analyser<'a> {
     names: &'a Names,
     numbers: &'a Numbers,
-    labels: &'a BTreeSet<String>,
+    labels: &'a Labels,
     program: &'a ast::Program,
     definition: &'a ast::ControlProgram,
     /// The parameters, and the variables of `let` and `dotimes` around the place at hand.
     scope: Vec<String>,
+    /// Which of the parameters are used.
+    used: &'a [Cell<bool>],
     problems: &'a mut Problems,
 }
 
@@ -115,12 +131,14 @@ impl Analyser<'_> {
                 Diagnostic::error(Code::NoBody, definition.name.span, format!("`{name}` is neither primitive nor has it a body"))
                     .primary("nothing says what this program does")
                     .label(duration.span, "it only has a duration")
-                    .help("Declare it primitive: `(declare (primitive) (duration ...))`."),
+                    .help("Declare it primitive: `(declare (primitive) (duration ...))`.")
+                    .suggest("Declare it primitive", [Edit::before(duration.span, "(primitive) ")]),
             ),
             None if !has_body && !definition.damaged => self.problems.push(
                 Diagnostic::error(Code::NoBody, definition.name.span, format!("`{name}` has no body"))
                     .primary("nothing says what this program does")
-                    .help("Give it a body, or declare it primitive: `(declare (primitive) (duration (simple :upper-bound 10)))`."),
+                    .help("Give it a body, or declare it primitive: `(declare (primitive) (duration (simple :upper-bound 10)))`.")
+                    .suggest("Declare it primitive", [Edit::before(closing(definition.span), " (declare (primitive))")]),
             ),
             None => {}
         }
@@ -134,18 +152,35 @@ impl Analyser<'_> {
             program: self.program,
             home: &self.definition.home,
             scope: &self.scope,
+            used: self.used,
             problems: self.problems,
         }
     }
 }
 
+/// The parenthesis at the end of a form.
+fn closing(form: Span) -> Span {
+    Span { start: form.end.saturating_sub(1), ..form }
+}
+
+/// A name that `label` gives: where first, and whether any `between` means it.
+pub(super) struct LabelUse {
+    first: Span,
+    meant: Cell<bool>,
+}
+
 /// All names that a `label` gives, in any program.
-fn labels(program: &ast::Program) -> BTreeSet<String> {
-    let mut labels = BTreeSet::new();
+type Labels = BTreeMap<String, LabelUse>;
+
+fn labels(program: &ast::Program) -> Labels {
+    let mut labels = Labels::new();
     let mut open: Vec<&ast::Body> = program.programs.iter().flat_map(|program| &program.body).collect();
     while let Some(body) = open.pop() {
         if let ast::Body::Label(labelled) = body {
-            labels.insert(labelled.name.name.clone());
+            let ast::Ident { name, span, .. } = &labelled.name;
+            let known =
+                labels.entry(name.clone()).or_insert(LabelUse { first: *span, meant: Cell::new(false) });
+            known.first = known.first.min(*span);
         }
         open.extend(body.parts());
     }

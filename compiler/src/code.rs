@@ -77,7 +77,7 @@ codes! {
     Recursion = 303, "a program that calls itself", names::RECURSION;
     WrongArguments = 304, "the wrong number of arguments", names::WRONG_ARGUMENTS;
     NoEntry = 305, "there is no program to start from", names::NO_ENTRY;
-    NeverUsed = 306, "a program that is never used", names::NEVER_USED;
+    NeverUsed = 306, "something that is never used", names::NEVER_USED;
     UnknownName = 307, "a name that stands for nothing", names::UNKNOWN_NAME;
     StartsAtDelayedEnd = 308, "an activity starts at an end that is heard late", names::STARTS_AT_DELAYED_END;
     TooManyEpisodes = 309, "the program unfolds to too many episodes", names::TOO_MANY_EPISODES;

@@ -4,15 +4,17 @@
 //! costs memory and not the stack of the machine. A `(` in the first column that begins a definition while an earlier
 //! form is open means that the earlier form was never closed.
 
+mod damage;
 pub(crate) mod foreign;
 mod token;
 
 use crate::code::Code;
-use crate::diagnostic::Diagnostic;
-use crate::form::{Form, FormKind, Symbol, clip};
+use crate::diagnostic::{Diagnostic, Edit};
+use crate::form::{Form, FormKind, Symbol};
 use crate::problem::Problems;
 use crate::source::{Source, Span};
-use foreign::{begins_definition, foreign_line, foreign_text, foreign_token};
+use damage::{unreadable, with_comma};
+use foreign::{Found, begins_definition, foreign_text, foreign_token};
 pub(crate) use token::Tokens;
 
 pub use token::{Kind, Token, tokens};
@@ -110,6 +112,8 @@ struct Reader<'a> {
     line_start: usize,
     /// True while nothing but blanks has been seen on this line.
     first_on_line: bool,
+    /// Where the last token ends that was taken.
+    last_end: usize,
 }
 
 impl<'a> Reader<'a> {
@@ -127,6 +131,7 @@ impl<'a> Reader<'a> {
             too_deep: false,
             line_start: 0,
             first_on_line: true,
+            last_end: 0,
         }
     }
 
@@ -155,10 +160,12 @@ impl<'a> Reader<'a> {
 
                 _ if self.stack.is_empty() => self.stray(token),
                 _ if self.skipped_as_foreign(token) => {}
+                Kind::Number if self.skipped_as_number(token) => {}
                 Kind::Unreadable => self.unreadable(token),
                 _ => self.atom(token),
             }
             self.first_on_line = false;
+            self.last_end = self.tokens.position();
         }
         if !self.stack.is_empty() {
             self.unclosed(None);
@@ -311,11 +318,30 @@ impl<'a> Reader<'a> {
 
     /// Reports comments and strings as they are written elsewhere, and goes on behind them.
     fn skipped_as_foreign(&mut self, token: Token) -> bool {
-        let Some((length, problem)) = foreign_token(&self.text[token.start..]) else { return false };
-        let shown = self.text[token.start..token.start + length].lines().next().unwrap_or("");
-        let span = self.span(token.start, token.start + shown.len());
-        self.problems.push(problem(span));
-        self.tokens.seek(token.start + length);
+        let Some(found) = foreign_token(&self.text[token.start..]) else { return false };
+        let Found { length, open, close, instead: [begin, finish], problem } = found;
+        let end = token.start + length;
+        let shown = self.text[token.start..end].lines().next().unwrap_or("");
+        let mut problem = problem(self.span(token.start, token.start + shown.len()));
+        if !begin.is_empty() {
+            let edits = [
+                Edit::replace(self.span(token.start, token.start + open), begin),
+                Edit::replace(self.span(end - close, end), finish),
+            ];
+            let edits = edits.into_iter().filter(|edit| edit.span.start < edit.span.end);
+            problem = problem.suggest(format!("Write it as `{begin}...{finish}`"), edits);
+        }
+        self.problems.push(problem);
+        self.tokens.seek(end);
+        // What it was meant for is there all the same.
+        match begin {
+            "'" => self.push(token.start, Mark::Quote),
+            "\"" if self.skipped == 0 => {
+                let words = self.text[token.start + open..end - close].to_string();
+                self.finish(Form { span: self.span(token.start, end), kind: FormKind::String(words) });
+            }
+            _ => {}
+        }
         true
     }
 
@@ -328,7 +354,21 @@ impl<'a> Reader<'a> {
             self.close(token);
             return;
         }
-        self.problems.push(unreadable(text, span));
+        let problem = unreadable(text, span);
+        self.problems.push(match text {
+            // Before a blank it is no mark of Lisp.
+            "," if self.text[token.end..].starts_with(char::is_whitespace) => {
+                problem.take_out("the comma", span)
+            }
+            "[" | "{" if self.problems.wants(self.source) => match self.closing_bracket() {
+                Some(close) => problem.suggest(
+                    "Change to round parentheses",
+                    [Edit::replace(span, "("), Edit::replace(self.span(close, close + 1), ")")],
+                ),
+                None => problem,
+            },
+            _ => problem,
+        });
         match text {
             "[" | "{" => self.push(token.start, Mark::Bracket),
             "]" | "}" => {}
@@ -338,17 +378,69 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// The bracket that closes the one just taken, if it is a bracket and near.
+    fn closing_bracket(&self) -> Option<usize> {
+        /// So many tokens are looked at.
+        const NEAR: usize = 200;
+        let mut tokens = Tokens::new(self.text);
+        tokens.seek(self.tokens.position());
+        let mut depth = 0_usize;
+        for _ in 0..NEAR {
+            let token = tokens.take();
+            match (&self.text[token.start..token.end], token.kind) {
+                (_, Kind::End) => return None,
+                ("[" | "{", _) | (_, Kind::Open) => depth += 1,
+                ("]" | "}", _) if depth == 0 => return Some(token.start),
+                (_, Kind::Close) if depth == 0 => return None,
+                ("]" | "}", _) | (_, Kind::Close) => depth -= 1,
+                _ => {}
+            }
+        }
+        None
+    }
+
+    /// Reports a number with a comma in it, and goes on behind it.
+    fn skipped_as_number(&mut self, token: Token) -> bool {
+        let Some((length, plain, what)) = with_comma(&self.text[token.start..]) else { return false };
+        let span = self.span(token.start, token.start + length);
+        self.problems.push(
+            Diagnostic::error(
+                Code::Unreadable,
+                span,
+                format!("`{}` is no number", &self.text[token.start..token.start + length]),
+            )
+            .primary(what)
+            .help(format!("Numbers are written without commas: `{plain}`."))
+            .change(span, plain),
+        );
+        if self.skipped == 0 {
+            self.note_item(token.start);
+            self.finish(Form { span, kind: FormKind::Error });
+        }
+        self.tokens.seek(token.start + length);
+        true
+    }
+
     /// Reports a string that ends in the middle of a line of words: a quotation mark inside of it.
     fn string_goes_on(&mut self, token: Token) {
         let line = self.text[token.end..].lines().next().unwrap_or("");
-        let span = self.span(token.end - 1, token.end);
-        self.problems.push(
-            Diagnostic::error(Code::UnclosedString, span, "this quotation mark ends the string")
-                .primary("and words follow without a blank")
-                .label(self.span(token.start, token.start + 1), "the string begins here")
-                .help("Inside a string, a quotation mark is written `\\\"`."),
-        );
         let end = line.rfind('"').map_or(token.end, |at| token.end + at + 1);
+        let mut problem = Diagnostic::error(
+            Code::UnclosedString,
+            self.span(token.end - 1, token.end),
+            "this quotation mark ends the string",
+        )
+        .primary("and words follow without a blank")
+        .label(self.span(token.start, token.start + 1), "the string begins here")
+        .help("Inside a string, a quotation mark is written `\\\"`.");
+        // All but the last one are inside.
+        let marks = self.text[token.end - 1..end].match_indices('"').map(|(at, _)| token.end - 1 + at);
+        let inner: Vec<Edit> =
+            marks.filter(|at| at + 1 < end).map(|at| Edit::before(self.span(at, at), "\\")).collect();
+        if !inner.is_empty() {
+            problem = problem.suggest("Make the quotation marks part of the string", inner);
+        }
+        self.problems.push(problem);
         if self.skipped == 0 {
             self.finish(Form { span: self.span(token.start, end), kind: FormKind::Error });
         }
@@ -357,168 +449,25 @@ impl<'a> Reader<'a> {
 
     /// Reports a string without an end and goes on with the line after the one it begins on.
     fn unclosed_string(&mut self, at: usize) {
-        let span = self.span(at, at + 1);
-        self.problems.push(
-            Diagnostic::error(Code::UnclosedString, span, "this string is never closed")
+        let mut problem =
+            Diagnostic::error(Code::UnclosedString, self.span(at, at + 1), "this string is never closed")
                 .primary("the string begins here; a closing `\"` was expected")
-                .help("Inside a string, a quotation mark is written `\\\"`."),
-        );
+                .help("Inside a string, a quotation mark is written `\\\"`.");
+        // Where the forms around it are closed on the same line, it ends before that.
+        let line = self.text[at + 1..].lines().next().unwrap_or("").trim_end();
+        let words = line.trim_end_matches(')');
+        if !words.is_empty() && words.len() < line.len() && !words.contains(['(', ')', '"']) {
+            let end = at + 1 + words.len();
+            problem =
+                problem.suggest("Close it before the parenthesis", [Edit::before(self.span(end, end), "\"")]);
+        }
+        self.problems.push(problem);
         let line_end = self.text[at..].find('\n').map_or(self.text.len(), |n| at + n);
         if self.skipped == 0 {
             let span = self.span(at, line_end);
             self.finish(Form { span, kind: FormKind::Error });
         }
         self.tokens.seek(line_end);
-    }
-
-    /// Reports the form that is open and gives up all that are.
-    fn unclosed(&mut self, next: Option<usize>) {
-        let outermost = self.stack.first().map_or(0, |open| open.at);
-        let innermost =
-            self.stack.iter().rev().find(|open| !open.mark.is_prefix()).map_or(outermost, |open| open.at);
-        let at = self.suspect.unwrap_or(innermost);
-        let missing = self.stack.iter().filter(|open| !open.mark.is_prefix()).count() + self.skipped;
-        // A definition is shown with its name.
-        let words = if begins_definition(&self.text[at..]) { 2 } else { 1 };
-        let shown: Vec<&str> = self.text[at..]
-            .split(|c: char| c.is_whitespace() || c == ')')
-            .filter(|word| !word.is_empty())
-            .take(words)
-            .collect();
-        let name = shown.join(" ");
-        let what = match missing {
-            1 => "a `)` is missing".to_string(),
-            _ => format!("{missing} `)` are missing"),
-        };
-        let mut problem = Diagnostic::error(
-            Code::UnclosedForm,
-            self.span(at, at + 1),
-            format!("the form `{}` is never closed", clip(&name)),
-        )
-        .primary(format!("{what} for the form that is open here"));
-        if at != outermost {
-            problem =
-                problem.label(self.span(outermost, outermost + 1), "inside the definition that begins here");
-        }
-        problem = match next {
-            Some(next) => {
-                problem.label(self.span(next, next + 1), "the next definition begins before it is closed")
-            }
-            None => problem.help("The text ends while it is still open: is the end of the file missing?"),
-        };
-        self.problems.push(problem);
-        self.skipped = 0;
-        // What there is of the form is kept, so that its name is known; other damage in it follows from this one.
-        let end = next.unwrap_or(self.text.len());
-        self.problems.mute(self.span(outermost, end));
-        while let Some(open) = self.stack.pop() {
-            let span = self.span(open.at, end);
-            let form = if open.mark.is_prefix() {
-                Form { span, kind: FormKind::Error }
-            } else {
-                Form { span, kind: FormKind::List(open.items) }
-            };
-            match self.stack.last_mut() {
-                Some(top) => top.items.push(form),
-                None => self.forms.push(form),
-            }
-        }
-        self.suspect = None;
-    }
-
-    /// A `)` that closes nothing. Forms that fell out of the definition before it are taken back.
-    fn stray_close(&mut self, token: Token) {
-        let mut end = token.end;
-        loop {
-            let next = self.tokens.peek();
-            if next.kind != Kind::Close {
-                break;
-            }
-            end = next.end;
-            self.tokens.take();
-        }
-        let at_line_start = |form: &Form| {
-            let start = form.span.start as usize;
-            start == 0 || self.text.as_bytes().get(start - 1) == Some(&b'\n')
-        };
-        let mut closed_at = None;
-        let spilled = self.forms.iter().rposition(at_line_start).map(|at| at + 1);
-        if let Some(from) = spilled {
-            // They belong to the definition: given back to it, what they call is in use.
-            let lost = self.forms.split_off(from);
-            if let Some(Form { kind: FormKind::List(items), span }) = self.forms.last_mut() {
-                closed_at = Some(span.end as usize);
-                if let Some(last) = lost.last() {
-                    span.end = last.span.end;
-                }
-                items.extend(lost);
-            }
-        }
-        let count = self.text[token.start..end].matches(')').count();
-        let message = match count {
-            1 => "this parenthesis closes nothing".to_string(),
-            _ => "these parentheses close nothing".to_string(),
-        };
-        let mut problem = Diagnostic::error(Code::StrayClose, self.span(token.start, end), message)
-            .primary(if count == 1 { "one `)` too many" } else { "too many `)`" });
-        if let Some(close) = closed_at {
-            problem = problem.label(
-                self.span(close.saturating_sub(1), close),
-                "the definition before it already ends here",
-            );
-        }
-        if let Some((item, line)) = self.closed_early.take() {
-            let word = self.text[item..].split(|c: char| c.is_whitespace() || c == ')').next().unwrap_or("");
-            let message = format!(
-                "this line is indented as if `{}` were still open: look at the parentheses just before it",
-                clip(word)
-            );
-            problem = problem.label(self.span(line, line + 1), message);
-        }
-        self.problems.push(problem);
-        // Whatever else is wrong with the definition follows from that.
-        if let (Some(_), Some(form)) = (closed_at, self.forms.last()) {
-            self.problems.mute(form.span);
-        }
-    }
-
-    /// Text outside all forms: reported once for a run of lines, which is left out.
-    fn stray(&mut self, token: Token) {
-        let mut end = token.start;
-        for line in self.text[token.start..].split_inclusive('\n') {
-            let continues = end == token.start || !(line.starts_with(['(', ';']) || line.starts_with("#|"));
-            if !continues {
-                break;
-            }
-            if let Some(definition) = line.match_indices('(').find(|(at, _)| begins_definition(&line[*at..]))
-            {
-                end += definition.0;
-                break;
-            }
-            end += line.len();
-        }
-        let shown = self.text[token.start..end].trim_end();
-        let first = shown.lines().next().unwrap_or("");
-        let span = self.span(token.start, token.start + first.trim_end().len());
-        let problem = match foreign_line(first) {
-            Some(what) => Diagnostic::error(Code::NotRmpl, span, format!("this is {what}, not RMPL"))
-                .primary("a definition in parentheses was expected here")
-                .help("Take it out, or put `;` in front of it to make it a comment."),
-            None => Diagnostic::error(
-                Code::StrayText,
-                span,
-                format!(
-                    "`{}` stands outside every definition",
-                    clip(first.split_whitespace().next().unwrap_or(first))
-                ),
-            )
-            .primary("a definition in parentheses was expected here")
-            .help("A comment begins with `;`. A program is `(define-control-program name () ...)`."),
-        };
-        self.problems.push(problem);
-        self.problems.lose_text(shown);
-        self.tokens.seek(end.max(token.end.min(self.text.len())).max(token.start + 1));
-        self.line_start = self.text[..self.tokens.position()].rfind('\n').map_or(0, |n| n + 1);
     }
 
     /// From `start`, which is on the boundary of a character, to the first boundary from `end` on.
@@ -546,34 +495,4 @@ fn unescape(text: &str) -> String {
         plain.extend(if c == '\\' { chars.next() } else { Some(c) });
     }
     plain
-}
-
-fn unreadable(text: &str, span: Span) -> Diagnostic {
-    let plain = |c: char| if c.is_control() { c.escape_debug().to_string() } else { c.to_string() };
-    let shown: String = clip(text).chars().map(plain).collect();
-    let (message, help) = match text.chars().next() {
-        Some(',') => (
-            "a comma has no meaning in RMPL".to_string(),
-            Some("Between the elements of a form there are blanks; a decimal number has a point: `1.5`."),
-        ),
-        Some('`') => (
-            format!("`{shown}` is for Lisp macros, which kirk does not run"),
-            Some("Write the form out as it should be."),
-        ),
-        Some('#') => (
-            format!("kirk does not read `{shown}`"),
-            Some("Of the forms that begin with `#`, kirk reads `#:name` and the comment `#| ... |#`."),
-        ),
-        Some('[' | ']' | '{' | '}') => {
-            (format!("`{shown}` has no meaning in RMPL"), Some("Forms are enclosed in round parentheses."))
-        }
-        Some('|' | '\\') => (
-            format!("kirk does not read `{shown}` in names"),
-            Some("Names are made of letters, digits and `-+*/<>=.!?%&$_~^@`."),
-        ),
-        _ => (format!("the character `{shown}` has no meaning here"), None),
-    };
-    Diagnostic::error(Code::Unreadable, span, message)
-        .primary("not RMPL")
-        .maybe_help(help.map(str::to_string))
 }

@@ -260,25 +260,33 @@ impl<'a> Reducer<'a> {
     /// Places a contingent event whose parent is placed, with all that follow it at a fixed distance.
     fn place_group(&mut self, root: EventId) -> Result<(), TooLarge> {
         let group = self.trees.twins_of(self.network, root);
+        // What is known roughly is measured from the origin, as is what can be measured from nothing else.
         let known = self.known(root);
-        let parent = if known.is_some() { self.network.origin() } else { self.link(root).from };
+        let mut from_origin = known.is_some();
+        let parent = if from_origin { root } else { self.link(root).from };
         let mut base = parent;
         let (mut lower, mut upper) = known.map_or_else(|| self.window(root, base), Ok)?;
-        let mut inexact = self.place(parent).is_heard_late() || self.place(parent).inexact;
+        let mut inexact = !from_origin && (self.place(parent).is_heard_late() || self.place(parent).inexact);
         // A single value, or news that may be equally late whatever happened, tells nothing.
         let news = self.best_news(&group)?.filter(|news| upper - lower > news.max - news.min);
         if let Some(news) = &news {
             // The moment of acting on the news must not come before the node it is measured from.
-            while add(lower, news.max)? < 0 {
-                base = self.place(base).base;
-                (lower, upper) = self.window(root, base)?;
+            while !from_origin && add(lower, news.max)? < 0 {
+                let above = self.place(base).base;
+                if above == base {
+                    (lower, upper) = self.path(root, base, self.known(base).unwrap_or_default())?;
+                    (base, from_origin) = (root, true);
+                } else {
+                    base = above;
+                    (lower, upper) = self.window(root, base)?;
+                }
             }
             inexact |= base != parent || news.rivals;
         }
         if inexact {
             self.places[parent.index()].iter_mut().for_each(|place| place.inexact = true);
         }
-        let activation = self.place(base).node;
+        let activation = if from_origin { 0 } else { self.place(base).node };
         let mut node = activation;
         if let Some(news) = &news {
             let (mut earliest, latest) = (add(lower, news.max)?, add(upper, news.min)?);
@@ -337,7 +345,12 @@ impl<'a> Reducer<'a> {
     /// The window of `event` after the node of its ancestor `base`.
     fn window(&self, event: EventId, base: EventId) -> Result<(i64, i64), TooLarge> {
         let place = self.place(base);
-        let (mut lower, mut upper) = (place.earliest, place.latest);
+        self.path(event, base, (place.earliest, place.latest))
+    }
+
+    /// The window of `event` if its ancestor `base` has this one.
+    fn path(&self, event: EventId, base: EventId, window: (i64, i64)) -> Result<(i64, i64), TooLarge> {
+        let (mut lower, mut upper) = window;
         let mut at = event;
         while at != base {
             let link = self.link(at);

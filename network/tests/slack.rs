@@ -40,6 +40,10 @@ fn controllables(usual: u64, shapes: &[Shape], mut with: impl FnMut(u64, &Networ
     assert!(count > cases(usual) / 10, "{count} networks were controllable");
 }
 
+fn too_careful(network: &Network) -> bool {
+    matches!(check(network).unwrap(), Verdict::Uncontrollable(conflict) if conflict.conservative)
+}
+
 fn shapes() -> [Shape; 4] {
     [Shape::tiny_delayed(), Shape::tiny_delayed().chained(), Shape::medium(), Shape::medium().chained()]
 }
@@ -74,7 +78,9 @@ fn slack_is_tight_on_both_sides() {
                 let Some(value) = value.finite() else { continue };
                 let (low, high) = (value.min(end), value.max(end));
                 let between = micros(random.within(low.as_micros()..=high.as_micros()));
-                assert_eq!(yes(between.into()), Some(true), "at {between}: {}", about());
+                // In a delayed chain a "no" may be too careful, and then it says so: it is none.
+                let careful = knob.at(network, between.into()).is_some_and(|varied| too_careful(&varied));
+                assert!(careful || yes(between.into()) == Some(true), "at {between}: {}", about());
             }
             let is_harder_if_less =
                 matches!(knob.parts()[0], Part::RequirementUpper(_) | Part::LinkLower(_) | Part::DelayMin(_));

@@ -195,6 +195,11 @@ impl Dispatcher {
         &self.network
     }
 
+    /// The latest time that anything was done.
+    pub(crate) fn now(&self) -> Time {
+        Time::from_micros(self.now)
+    }
+
     /// What is known of an event.
     pub fn known(&self, event: EventId) -> &Known {
         self.knowledge.of(event)

@@ -383,8 +383,10 @@ impl Executive {
         // One microsecond more than is allowed, and it is lost.
         let lost =
             self.awaited.iter().filter_map(|(by, _)| by.checked_add(self.slack)?.checked_add(MICROSECOND));
-        let soonest = retry.chain(surely).chain(lost).min();
-        soonest.into_iter().chain(self.dispatcher.poll_timeout()).min()
+        let soonest =
+            retry.chain(surely).chain(lost).min().into_iter().chain(self.dispatcher.poll_timeout()).min();
+        // When nothing else is to come.
+        soonest.or_else(|| self.overdue(self.dispatcher.now())?.checked_add(MICROSECOND))
     }
 
     /// What the driver was told of and has not confirmed, in the order in which it was told first.
@@ -520,6 +522,7 @@ impl Executive {
             && self.held.is_empty()
             && self.orders.iter().all(|order| order.state == State::Done)
             && self.dispatcher.is_over()
+            && self.overdue(now).is_none()
         {
             // A plan with the last news would have come too late.
             self.dispatcher.fix_heard();
@@ -539,6 +542,16 @@ impl Executive {
                 self.awaited.extend(self.dispatcher.news_by(event).map(|by| (by, event)));
             }
         }
+    }
+
+    /// Until when news may still come that is late by no more than is allowed. A mission that ends before that would say of it
+    /// that it is lost.
+    fn overdue(&self, now: Time) -> Option<Time> {
+        let network = self.network();
+        let unheard = network.contingents().iter().map(|link| link.to);
+        let unheard = unheard.filter(|&event| self.dispatcher.known(event).observed.is_none());
+        let late = unheard.filter_map(|event| self.dispatcher.news_by(event)).filter(|&by| by < now);
+        late.filter_map(|by| by.checked_add(self.slack)).filter(|&until| until >= now).max()
     }
 
     /// Says so when news is lost: what was imagined stands, but something is wrong in the world.

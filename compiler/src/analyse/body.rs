@@ -122,8 +122,10 @@ impl Analyser<'_> {
         let occurring = || self.names.program(&occurs(&event.name)?, &self.definition.home);
         let program = exactly.or_else(occurring);
         let is_occurrence = exactly.is_none() && program.is_some();
-        let is_label = event.name.package.is_none() && self.labels.contains(&event.name.name);
-        if program.is_none() && !is_label {
+        let label = self.labels.get(&event.name.name).filter(|_| event.name.package.is_none());
+        if let Some(label) = label {
+            label.meant.set(true);
+        } else if program.is_none() {
             if !self.problems.has_lost(&event.name.name) {
                 self.unknown_event(&event.name);
             }
@@ -134,7 +136,7 @@ impl Analyser<'_> {
     }
 
     fn unknown_event(&mut self, ident: &ast::Ident) {
-        let labels = self.labels.iter().map(String::as_str);
+        let labels = self.labels.keys().map(String::as_str);
         let programs = self.program.programs.iter().map(|program| program.name.name.as_str());
         let name = clip(&ident.name);
         let numbered = ident.name.split_once('#').map(|(program, _)| program);

@@ -1,5 +1,7 @@
 //! Numbers and arguments: names are resolved, and what does not depend on a variable is calculated.
 
+use std::cell::Cell;
+
 use kirk_network::Bound;
 
 use super::names::Names;
@@ -21,7 +23,8 @@ pub(super) fn named_numbers(program: &ast::Program, names: &Names, problems: &mu
     let mut numbers = Numbers::new();
     for definition in &program.parameters {
         let home = &definition.home;
-        let mut resolver = Resolver { names, numbers: &numbers, program, home, scope: &[], problems };
+        let mut resolver =
+            Resolver { names, numbers: &numbers, program, home, scope: &[], used: &[], problems };
         let expression = resolver.amount(&definition.value);
         numbers.push(match resolver.known(&expression, "this value") {
             AmountValue::Known(bound) => Some(bound),
@@ -40,6 +43,8 @@ pub(super) struct Resolver<'a> {
     pub(super) home: &'a str,
     /// The variables known there, from the outside in.
     pub(super) scope: &'a [String],
+    /// Which of the parameters, the outermost, are used.
+    pub(super) used: &'a [Cell<bool>],
     pub(super) problems: &'a mut Problems,
 }
 
@@ -122,6 +127,9 @@ impl Resolver<'_> {
     fn name(&mut self, ident: &Ident) -> ExpressionKind {
         let mine = |known: &String| ident.package.is_none() && *known == ident.name;
         if let Some(index) = self.scope.iter().rposition(mine) {
+            if let Some(used) = self.used.get(index) {
+                used.set(true);
+            }
             return ExpressionKind::Variable(index, ident.name.clone());
         }
         let Some(index) = self.names.number(ident, self.home) else {

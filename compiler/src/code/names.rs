@@ -46,7 +46,10 @@ is looked for in the one given by `-P`.",
 pub(super) const NEVER_USED: Page = Page {
     meaning: "Nothing that the program to start from does leads to this one. It may be a forgotten call, or it may be left
 over. When another entry is chosen with `--entry`, programs that nobody calls are taken for entries as well
-and are not reported.",
+and are not reported.
+
+A parameter that nothing in the body means makes no difference, whatever is given for it; those of primitive programs are
+for whoever executes them. A label that no `between` means only gives events another name.",
     wrong: "(define-control-program a () (declare (primitive)))
 (define-control-program b () (declare (primitive)))
 (define-control-program main () (a))",

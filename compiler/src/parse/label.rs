@@ -41,6 +41,7 @@ fn reserved(name: &Ident) -> Diagnostic {
     )
     .primary("`#` numbers occurrences: `a#2` is the second of `a`")
     .help(format!("Give it another name, such as `{}`, here and wherever it is used.", clip(&plain)))
+    .change(name.span, plain)
 }
 
 /// Parses `between`.

@@ -121,7 +121,8 @@ fn parameters(items: &[Form], problems: &mut Problems) -> Vec<Ident> {
                 .help("Every parameter of a control program is given by place; there are no optional ones."),
             ),
             Some(name) if matches!(name.name.as_str(), "t" | "nil") => {
-                problems.push(reserved(item, &name.name, "a parameter"));
+                let word = &name.name;
+                problems.push(reserved(item, word, "a parameter").change(item.span, format!("{word}-1")));
                 names.push(name);
             }
             Some(name) => {

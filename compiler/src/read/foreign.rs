@@ -97,43 +97,77 @@ pub(super) fn foreign_line(line: &str) -> Option<&'static str> {
     })
 }
 
-/// The length of something in the text, and what to say about it.
-type Found = (usize, fn(Span) -> Diagnostic);
+/// The length of something in the text, how many bytes of it open and close it, what to write instead of those, and what to
+/// say about it.
+pub(super) struct Found {
+    pub(super) length: usize,
+    pub(super) open: usize,
+    pub(super) close: usize,
+    pub(super) instead: [&'static str; 2],
+    pub(super) problem: fn(Span) -> Diagnostic,
+}
 
 /// A comment or a string as other languages and word processors write them.
 pub(super) fn foreign_token(text: &str) -> Option<Found> {
     /// How far the end of a comment is looked for.
     const NEAR: usize = 1_000;
-    let line = || text.lines().next().unwrap_or("");
-    let comment = |span| {
+    let line = || text.lines().next().unwrap_or("").len();
+    let problem = |span| {
         Diagnostic::error(Code::Unreadable, span, "this is a comment of another language")
             .primary("not RMPL")
             .help("A comment begins with `;` and goes to the end of the line.")
     };
-    let curly = |span| {
-        Diagnostic::error(Code::Unreadable, span, "these are not the quotation marks of a program")
-            .primary("not RMPL")
-            .help("A string stands in straight quotation marks: `\"text\"`.")
-    };
     if text.starts_with("/*") {
         let end = text.bytes().take(NEAR).zip(text.bytes().skip(1)).position(|pair| pair == (b'*', b'/'));
-        return Some((end.map_or_else(|| line().len(), |at| at + 2), comment));
+        let (length, close, instead) = match end {
+            Some(at) => (at + 2, 2, ["#|", "|#"]),
+            None => (line(), 0, [";", ""]),
+        };
+        return Some(Found { length, open: 2, close, instead, problem });
     }
     let hash =
         text.strip_prefix('#').is_some_and(|rest| rest.is_empty() || rest.starts_with([' ', '\t', '#']));
     if text.starts_with("//") || hash {
-        return Some((line().len(), comment));
+        let open = if hash { 1 } else { 2 };
+        return Some(Found { length: line(), open, close: 0, instead: [";", ""], problem });
     }
-    let closing = match text.chars().next()? {
+    let first = text.chars().next()?;
+    let closing = match first {
         '“' | '„' => ['”', '“'],
         '«' => ['»', '»'],
         '‘' => ['’', '’'],
         _ => return None,
     };
-    let opened = text.chars().next().map_or(0, char::len_utf8);
-    let mut end = text[opened..].char_indices().find(|(_, c)| closing.contains(c) || *c == '\n');
-    end = end.filter(|(_, c)| *c != '\n');
-    Some((end.map_or_else(|| line().len(), |(at, c)| opened + at + c.len_utf8()), curly))
+    let open = first.len_utf8();
+    let end = text[open..].char_indices().find(|(_, c)| closing.contains(c) || *c == '\n');
+    match end.filter(|(_, c)| *c != '\n') {
+        Some((at, c)) => {
+            let (length, close) = (open + at + c.len_utf8(), c.len_utf8());
+            let problem = |span| {
+                Diagnostic::error(Code::Unreadable, span, "these are not the quotation marks of a program")
+                    .primary("not RMPL")
+                    .help("A string stands in straight quotation marks: `\"text\"`.")
+            };
+            Some(Found { length, open, close, instead: ["\"", "\""], problem })
+        }
+        // One that closes nothing, like the one that a word processor makes of a quote.
+        None if first == '‘' => {
+            let problem = |span| {
+                Diagnostic::error(Code::Unreadable, span, "the character `‘` (U+2018) has no meaning here")
+                    .primary("a curly quotation mark")
+                    .help("A symbol that stands for itself is quoted with a straight one: `'name`; the name of a program is not quoted.")
+            };
+            Some(Found { length: open, open, close: 0, instead: ["'", ""], problem })
+        }
+        None => {
+            let problem = |span| {
+                Diagnostic::error(Code::Unreadable, span, "this quotation mark is not one of a program")
+                    .primary("not RMPL, and never closed")
+                    .help("A string stands in straight quotation marks: `\"text\"`.")
+            };
+            Some(Found { length: line(), open, close: 0, instead: ["", ""], problem })
+        }
+    }
 }
 
 fn not_text(source: u32, text: &str, at: usize) -> Diagnostic {

@@ -1,0 +1,237 @@
+//! What is damaged in a text: parentheses that do not pair, words outside of all forms, characters without a meaning.
+
+use super::foreign::{begins_definition, foreign_line};
+use super::{Kind, Reader, Token};
+use crate::code::Code;
+use crate::diagnostic::{Diagnostic, Edit};
+use crate::form::{Form, FormKind, clip};
+use crate::source::Span;
+
+impl Reader<'_> {
+    /// Reports the form that is open and gives up all that are.
+    pub(super) fn unclosed(&mut self, next: Option<usize>) {
+        let outermost = self.stack.first().map_or(0, |open| open.at);
+        let innermost =
+            self.stack.iter().rev().find(|open| !open.mark.is_prefix()).map_or(outermost, |open| open.at);
+        let at = self.suspect.unwrap_or(innermost);
+        let missing = self.stack.iter().filter(|open| !open.mark.is_prefix()).count() + self.skipped;
+        // A definition is shown with its name.
+        let words = if begins_definition(&self.text[at..]) { 2 } else { 1 };
+        let shown: Vec<&str> = self.text[at..]
+            .split(|c: char| c.is_whitespace() || c == ')')
+            .filter(|word| !word.is_empty())
+            .take(words)
+            .collect();
+        let name = shown.join(" ");
+        let what = match missing {
+            1 => "a `)` is missing".to_string(),
+            _ => format!("{missing} `)` are missing"),
+        };
+        let mut problem = Diagnostic::error(
+            Code::UnclosedForm,
+            self.span(at, at + 1),
+            format!("the form `{}` is never closed", clip(&name)),
+        )
+        .primary(format!("{what} for the form that is open here"));
+        if at != outermost {
+            problem =
+                problem.label(self.span(outermost, outermost + 1), "inside the definition that begins here");
+        }
+        problem = match next {
+            Some(next) => {
+                problem.label(self.span(next, next + 1), "the next definition begins before it is closed")
+            }
+            None => problem.help("The text ends while it is still open: is the end of the file missing?"),
+        };
+        // Where the lines are indented as if a form inside were closed, only its author knows where it is to end.
+        if self.suspect.is_none() && self.skipped == 0 {
+            let end = self.span(self.last_end, self.last_end);
+            problem = problem.suggest("Close what is open", [Edit::before(end, ")".repeat(missing))]);
+        }
+        self.problems.push(problem);
+        self.skipped = 0;
+        // What there is of the form is kept, so that its name is known; other damage in it follows from this one.
+        let end = next.unwrap_or(self.text.len());
+        self.problems.mute(self.span(outermost, end));
+        while let Some(open) = self.stack.pop() {
+            let span = self.span(open.at, end);
+            let form = if open.mark.is_prefix() {
+                Form { span, kind: FormKind::Error }
+            } else {
+                Form { span, kind: FormKind::List(open.items) }
+            };
+            match self.stack.last_mut() {
+                Some(top) => top.items.push(form),
+                None => self.forms.push(form),
+            }
+        }
+        self.suspect = None;
+    }
+
+    /// A `)` that closes nothing. Forms that fell out of the definition before it are taken back.
+    pub(super) fn stray_close(&mut self, token: Token) {
+        let mut end = token.end;
+        loop {
+            let next = self.tokens.peek();
+            if next.kind != Kind::Close {
+                break;
+            }
+            end = next.end;
+            self.tokens.take();
+        }
+        let at_line_start = |form: &Form| {
+            let start = form.span.start as usize;
+            start == 0 || self.text.as_bytes().get(start - 1) == Some(&b'\n')
+        };
+        let mut closed_at = None;
+        let mut fell_out = false;
+        let spilled = self.forms.iter().rposition(at_line_start).map(|at| at + 1);
+        if let Some(from) = spilled {
+            // They belong to the definition: given back to it, what they call is in use.
+            let lost = self.forms.split_off(from);
+            fell_out = !lost.is_empty();
+            if let Some(Form { kind: FormKind::List(items), span }) = self.forms.last_mut() {
+                closed_at = Some(span.end as usize);
+                if let Some(last) = lost.last() {
+                    span.end = last.span.end;
+                }
+                items.extend(lost);
+            }
+        }
+        let count = self.text[token.start..end].matches(')').count();
+        let message = match count {
+            1 => "this parenthesis closes nothing".to_string(),
+            _ => "these parentheses close nothing".to_string(),
+        };
+        let mut problem = Diagnostic::error(Code::StrayClose, self.span(token.start, end), message)
+            .primary(if count == 1 { "one `)` too many" } else { "too many `)`" });
+        if let Some(close) = closed_at {
+            problem = problem.label(
+                self.span(close.saturating_sub(1), close),
+                "the definition before it already ends here",
+            );
+        }
+        let closed_early = self.closed_early.take();
+        if !fell_out && closed_early.is_none() {
+            problem = problem.take_out("what closes nothing", self.span(token.start, end));
+        }
+        if let Some((item, line)) = closed_early {
+            let word = self.text[item..].split(|c: char| c.is_whitespace() || c == ')').next().unwrap_or("");
+            let message = format!(
+                "this line is indented as if `{}` were still open: look at the parentheses just before it",
+                clip(word)
+            );
+            problem = problem.label(self.span(line, line + 1), message);
+        }
+        self.problems.push(problem);
+        // Whatever else is wrong with the definition follows from that.
+        if let (Some(_), Some(form)) = (closed_at, self.forms.last()) {
+            self.problems.mute(form.span);
+        }
+    }
+
+    /// Text outside all forms: reported once for a run of lines, which is left out.
+    pub(super) fn stray(&mut self, token: Token) {
+        let mut end = token.start;
+        for line in self.text[token.start..].split_inclusive('\n') {
+            let continues = end == token.start || !(line.starts_with(['(', ';']) || line.starts_with("#|"));
+            if !continues {
+                break;
+            }
+            if let Some(definition) = line.match_indices('(').find(|(at, _)| begins_definition(&line[*at..]))
+            {
+                end += definition.0;
+                break;
+            }
+            end += line.len();
+        }
+        let shown = self.text[token.start..end].trim_end();
+        let mut at = token.start;
+        let comment: Vec<Edit> = shown
+            .split_inclusive('\n')
+            .filter_map(|line| {
+                let here = self.span(at, at);
+                at += line.len();
+                (!line.trim().is_empty()).then(|| Edit::before(here, "; "))
+            })
+            .collect();
+        let first = shown.lines().next().unwrap_or("");
+        let span = self.span(token.start, token.start + first.trim_end().len());
+        let problem = match foreign_line(first) {
+            Some(what) => Diagnostic::error(Code::NotRmpl, span, format!("this is {what}, not RMPL"))
+                .primary("a definition in parentheses was expected here")
+                .help("Take it out, or put `;` in front of it to make it a comment."),
+            None => Diagnostic::error(
+                Code::StrayText,
+                span,
+                format!(
+                    "`{}` stands outside every definition",
+                    clip(first.split_whitespace().next().unwrap_or(first))
+                ),
+            )
+            .primary("a definition in parentheses was expected here")
+            .help("A comment begins with `;`. A program is `(define-control-program name () ...)`."),
+        };
+        self.problems.push(problem.suggest("Make a comment of it", comment));
+        self.problems.lose_text(shown);
+        self.tokens.seek(end.max(token.end.min(self.text.len())).max(token.start + 1));
+        self.line_start = self.text[..self.tokens.position()].rfind('\n').map_or(0, |n| n + 1);
+    }
+}
+
+/// A number at the beginning of a text that has commas in it: its length, what was meant, and what the commas are there for.
+pub(super) fn with_comma(text: &str) -> Option<(usize, String, &'static str)> {
+    let end =
+        text.find(|c: char| !c.is_ascii_digit() && !matches!(c, ',' | '.' | '+' | '-')).unwrap_or(text.len());
+    let number = text[..end].trim_end_matches(',');
+    let after = &text[number.len()..];
+    let ends = after.is_empty()
+        || after.starts_with(|c: char| c.is_whitespace() || matches!(c, '(' | ')' | ',' | ';'));
+    let (first, rest) = number.split_once(',')?;
+    let (groups, decimals) =
+        rest.split_once('.').map_or((rest, None), |(groups, decimals)| (groups, Some(decimals)));
+    let digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    if !ends || !digits(first.trim_start_matches(['+', '-'])) || !groups.split(',').all(digits) {
+        return None;
+    }
+    let thousands = groups.split(',').all(|group| group.len() == 3);
+    match (thousands, decimals) {
+        (true, decimals) if decimals.is_none_or(digits) => {
+            Some((number.len(), number.replace(',', ""), "a comma between thousands"))
+        }
+        (false, None) if digits(groups) => {
+            Some((number.len(), number.replace(',', "."), "a comma before decimals"))
+        }
+        _ => None,
+    }
+}
+
+pub(super) fn unreadable(text: &str, span: Span) -> Diagnostic {
+    let plain = |c: char| if c.is_control() { c.escape_debug().to_string() } else { c.to_string() };
+    let shown: String = clip(text).chars().map(plain).collect();
+    let (message, help) = match text.chars().next() {
+        Some(',') => (
+            "a comma has no meaning in RMPL".to_string(),
+            Some("Between the elements of a form there are blanks; a decimal number has a point: `1.5`."),
+        ),
+        Some('`') => (
+            format!("`{shown}` is for Lisp macros, which kirk does not run"),
+            Some("Write the form out as it should be."),
+        ),
+        Some('#') => (
+            format!("kirk does not read `{shown}`"),
+            Some("Of the forms that begin with `#`, kirk reads `#:name` and the comment `#| ... |#`."),
+        ),
+        Some('[' | ']' | '{' | '}') => {
+            (format!("`{shown}` has no meaning in RMPL"), Some("Forms are enclosed in round parentheses."))
+        }
+        Some('|' | '\\') => (
+            format!("kirk does not read `{shown}` in names"),
+            Some("Names are made of letters, digits and `-+*/<>=.!?%&$_~^@`."),
+        ),
+        _ => (format!("the character `{shown}` has no meaning here"), None),
+    };
+    Diagnostic::error(Code::Unreadable, span, message)
+        .primary("not RMPL")
+        .maybe_help(help.map(str::to_string))
+}

@@ -354,12 +354,16 @@ pub(crate) struct Check {
     /// Missions or networks, or `-` for standard input.
     #[arg(value_name = "FILE", required = true)]
     pub(crate) files: Vec<String>,
+    /// Take all files as one program, as `run` and `compile` do, and not each by itself.
+    #[arg(long)]
+    pub(crate) together: bool,
     #[command(flatten)]
     pub(crate) selection: Selection,
     /// What to assume about the delays of news, instead of what is written.
     #[arg(long, value_enum, default_value_t = Delays::AsWritten, value_name = "WHAT")]
     pub(crate) delays: Delays,
-    /// How to print the result; JSON is one document per file, one per line, SARIF is one log of all files.
+    /// How to print the result; short is `FILE:LINE:COLUMN: KIND: MESSAGE` for every place a message is about, JSON is one
+    /// document per file, one per line, SARIF is one log of all files.
     #[arg(long, value_enum, default_value_t = CheckFormat::Text)]
     pub(crate) format: CheckFormat,
 }
@@ -367,6 +371,7 @@ pub(crate) struct Check {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum CheckFormat {
     Text,
+    Short,
     Json,
     Sarif,
 }

@@ -12,7 +12,8 @@ use serde::Serialize;
 
 use crate::args::{Check, CheckFormat, Common, Delays};
 use crate::conflict::{self, MemberJson};
-use crate::input::{Input, load, shown};
+use crate::elsewhere;
+use crate::input::{Input, load, load_all, shown};
 use crate::json::line;
 use crate::news::treatment;
 use crate::output::{Status, print, print_line};
@@ -22,11 +23,7 @@ use crate::sarif::Log;
 pub(crate) fn check(arguments: &Check, common: &Common) -> io::Result<Status> {
     let mut worst = Status::Yes;
     let mut log = Log::default();
-    for (index, file) in arguments.files.iter().enumerate() {
-        let mut input = match file == "-" && arguments.files[..index].contains(file) {
-            true => Input::twice(),
-            false => load(file, &arguments.selection),
-        };
+    for (file, mut input) in inputs(arguments) {
         let judged = judge_assuming(&mut input, arguments.delays);
         worst = worst.max(match &judged {
             None => Status::Wrong,
@@ -34,13 +31,14 @@ pub(crate) fn check(arguments: &Check, common: &Common) -> io::Result<Status> {
             Some(Judged { conflict: Some(_), .. }) => Status::No,
         });
         let reporter = Reporter::new(&input.sources);
-        let document = || CheckJson::new(shown(file), &input, judged.as_ref(), arguments.delays, &reporter);
+        let document = || CheckJson::new(&file, &input, judged.as_ref(), arguments.delays, &reporter);
         match arguments.format {
             CheckFormat::Json => print(&line(&document())?)?,
             CheckFormat::Sarif => log.add(&input, &reporter, &document()),
+            CheckFormat::Short => reporter.show_short(&input.diagnostics, common)?,
             CheckFormat::Text => {
                 reporter.show(&input.diagnostics, common)?;
-                print_line(&verdict_line(shown(file), &input, judged.as_ref(), arguments))?;
+                print_line(&verdict_line(&file, &input, judged.as_ref(), arguments))?;
                 if common.verbose
                     && let Some(network) = &input.network
                 {
@@ -53,6 +51,22 @@ pub(crate) fn check(arguments: &Check, common: &Common) -> io::Result<Status> {
         print(&line(&log.document(worst))?)?;
     }
     Ok(worst)
+}
+
+/// What is judged, each with what to call it: every file by itself, or all of them as one program.
+fn inputs(arguments: &Check) -> Vec<(String, Input)> {
+    let Check { files, selection, .. } = arguments;
+    if arguments.together {
+        let all: Vec<&str> = files.iter().map(|file| shown(file)).collect();
+        return vec![(all.join(" "), load_all(files, selection))];
+    }
+    let one = |(index, file): (usize, &String)| match file == "-" && files[..index].contains(file) {
+        true => Input::twice(),
+        false => load(file, selection),
+    };
+    let mut inputs: Vec<Input> = files.iter().enumerate().map(one).collect();
+    elsewhere::point_out(&mut inputs, selection);
+    files.iter().map(|file| shown(file).to_string()).zip(inputs).collect()
 }
 
 /// The verdict on a network and how long it took.

@@ -6,6 +6,7 @@ mod args;
 mod check;
 mod compile;
 mod conflict;
+mod elsewhere;
 mod execute;
 mod explain;
 mod fmt;

@@ -11,6 +11,7 @@ use serde::Serialize;
 
 use crate::args::{Color, Common};
 use crate::foreign::{as_long, one_line, visible};
+use crate::output::print_line;
 
 /// The sources that diagnostics point into.
 pub(crate) struct Reporter<'a> {
@@ -49,6 +50,30 @@ impl<'a> Reporter<'a> {
             term::emit_to_write_style(&mut stream, &Config::default(), &files, &shown)
                 .map_err(io::Error::other)?;
             stream.flush()?;
+        }
+        Ok(())
+    }
+
+    /// One line for every place a diagnostic is about, to standard output: `FILE:LINE:COLUMN: KIND: MESSAGE`, as compilers write
+    /// them and editors read them. Notes and warnings not if quiet.
+    pub(crate) fn show_short(&self, diagnostics: &[Diagnostic], common: &Common) -> io::Result<()> {
+        for diagnostic in diagnostics {
+            if common.quiet && diagnostic.severity != Severity::Error {
+                continue;
+            }
+            let kind = match diagnostic.severity {
+                Severity::Error => "error",
+                Severity::Warning => "warning",
+                Severity::Note => "note",
+            };
+            let said = format!("{kind}[{}]: {}", diagnostic.code, diagnostic.message);
+            let first = std::iter::once((diagnostic.span, said));
+            let others =
+                diagnostic.labels.iter().map(|label| (label.span, format!("note: {}", label.message)));
+            for (span, said) in first.chain(others) {
+                let (line, column) = self.position(span.source, span.start).unwrap_or((1, 1));
+                print_line(&one_line(&format!("{}:{line}:{column}: {said}", self.name(span))))?;
+            }
         }
         Ok(())
     }
@@ -118,7 +143,11 @@ impl<'a> Reporter<'a> {
             labels: std::iter::once((diagnostic.span, &diagnostic.primary))
                 .filter(|(_, message)| !message.is_empty())
                 .chain(diagnostic.labels.iter().map(|label| (label.span, &label.message)))
-                .map(|(span, message)| LabelJson { span: self.span_json(span), message })
+                .map(|(span, message)| LabelJson {
+                    file: self.name(span).to_string(),
+                    span: self.span_json(span),
+                    message,
+                })
                 .collect(),
             help: diagnostic.help.as_deref(),
             suggestions: diagnostic
@@ -178,6 +207,7 @@ struct EditJson {
 
 #[derive(Serialize)]
 struct LabelJson<'a> {
+    file: String,
     span: Option<SpanJson>,
     message: &'a str,
 }

@@ -98,3 +98,56 @@ fn check_judges_each_file_for_itself() {
     let (status, out, _) = run(&files, &["check", "alone.rmpl", "same.rmpl"]);
     assert_eq!((status, out.lines().count()), (Some(0), 2), "{out}");
 }
+
+#[test]
+fn files_are_checked_together_if_that_is_asked_for_and_a_missing_program_says_where_it_is() {
+    let library =
+        "(define-control-program drive () (declare (primitive) (duration (simple :upper-bound 5))))";
+    let mission = "(define-control-program main () (drive))";
+    let files = [("a.rmpl", library), ("b.rmpl", mission)];
+    let (status, out, messages) = run(&files, &["check", "a.rmpl", "b.rmpl"]);
+    assert_eq!(status, Some(2), "{out}{messages}");
+    for said in [
+        "`drive` is in a.rmpl: `kirk check --together` takes",
+        "`main` is in b.rmpl: `kirk check --together` takes",
+    ] {
+        assert!(messages.contains(said), "{said} is not in {messages}");
+    }
+    let (status, out, messages) = run(&files, &["check", "--together", "a.rmpl", "b.rmpl"]);
+    assert_eq!((status, messages.as_str()), (Some(0), ""));
+    assert_eq!(out, "a.rmpl b.rmpl: `main` is controllable (2 events, 1 requirement, 0 contingent links)\n");
+    // Each message is about the file it stands in.
+    let wrong = "(define-control-program drive (fast) (declare (primitive)))";
+    let files = [("a.rmpl", wrong), ("b.rmpl", mission)];
+    let (status, out, _) = run(&files, &["check", "--together", "a.rmpl", "b.rmpl", "--format", "json"]);
+    assert_eq!(status, Some(2));
+    let document: serde_json::Value = serde_json::from_str(&out).unwrap();
+    assert_eq!(
+        (&document["file"], &document["diagnostics"][0]["file"]),
+        (&"a.rmpl b.rmpl".into(), &"b.rmpl".into())
+    );
+    assert_eq!(document["diagnostics"][0]["labels"][1]["file"], "a.rmpl");
+    let (_, out, _) = run(&files, &["check", "--together", "a.rmpl", "b.rmpl", "--format", "sarif"]);
+    let log: serde_json::Value = serde_json::from_str(&out).unwrap();
+    let result = &log["runs"][0]["results"][0];
+    let uri = |place: &serde_json::Value| {
+        place["physicalLocation"]["artifactLocation"]["uri"].as_str().unwrap().to_string()
+    };
+    assert!(uri(&result["locations"][0]).ends_with("b.rmpl"), "{result}");
+    assert!(uri(&result["relatedLocations"][0]).ends_with("a.rmpl"), "{result}");
+}
+
+#[test]
+fn the_short_form_has_a_line_for_every_place_with_the_guilty_bounds() {
+    let mission = "(define-control-program drive ()
+  (declare (primitive) (duration (simple :lower-bound 5 :upper-bound 90) :contingent t)))
+(define-control-program main ()
+  (with-temporal-constraint (simple-temporal :upper-bound 60)
+    (drive)))
+";
+    let (status, out, messages) = run(&[("m.rmpl", mission)], &["check", "m.rmpl", "--format", "short"]);
+    assert_eq!((status, messages.as_str()), (Some(1), ""));
+    let places: Vec<&str> = out.lines().map(|line| line.split(": ").next().unwrap()).collect();
+    assert_eq!(places, ["m.rmpl:3:25", "m.rmpl:4:59", "m.rmpl:2:70"], "{out}");
+    assert!(out.lines().all(|line| line.contains(": error[K0601]: ") || line.contains(": note: ")), "{out}");
+}

@@ -116,7 +116,7 @@ STATE is that of the parser there, as `lisp-indent-function' has it."
   (when buffer-file-name
     (setq-local compile-command
                 (mapconcat #'shell-quote-argument
-                           (list rmpl-kirk-program "check" "--color" "never" (file-relative-name buffer-file-name))
+                           (list rmpl-kirk-program "check" "--quiet" "--format" "short" (file-relative-name buffer-file-name))
                            " "))))
 
 ;;;###autoload
@@ -125,7 +125,9 @@ STATE is that of the parser there, as `lisp-indent-function' has it."
 (with-eval-after-load 'compile
   (defvar compilation-error-regexp-alist)
   (defvar compilation-error-regexp-alist-alist)
-  (add-to-list 'compilation-error-regexp-alist-alist '(kirk "^ *┌─ \\(.+\\):\\([0-9]+\\):\\([0-9]+\\)$" 1 2 3))
+  ;; One line for every place: the bounds that are to blame come after the message they belong to.
+  (add-to-list 'compilation-error-regexp-alist-alist
+               '(kirk "^\\(.+?\\):\\([0-9]+\\):\\([0-9]+\\): \\(?:error\\|\\(warning\\)\\|\\(note\\)\\)" 1 2 3 (4 . 5)))
   (add-to-list 'compilation-error-regexp-alist 'kirk))
 
 (defun rmpl--server (&rest _)

@@ -216,6 +216,9 @@ local tests = {
       vim.cmd("silent make")
       local found = vim.fn.getqflist()[1]
       same({ 21, 25, 601 }, { found.lnum, found.col, found.nr }, "where")
+      -- The bounds that are to blame come after it.
+      local guilty = vim.fn.getqflist()[2]
+      same({ 24, "N" }, { guilty.lnum, guilty.type:upper() }, "a bound")
     end,
   },
 }

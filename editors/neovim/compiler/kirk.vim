@@ -4,5 +4,6 @@ if exists("current_compiler")
 endif
 let current_compiler = "kirk"
 
-CompilerSet makeprg=kirk\ check\ --quiet\ --color\ never\ %:S
-CompilerSet errorformat=%E%trror[K%n]:\ %m,%W%tarning[K%n]:\ %m,%I%tote[K%n]:\ %m,%C\ %#┌─\ %f:%l:%c,%-G%.%#
+" One line for every place: the bounds that are to blame come after the message they belong to.
+CompilerSet makeprg=kirk\ check\ --quiet\ --format\ short\ %:S
+CompilerSet errorformat=%f:%l:%c:\ %trror[K%n]:\ %m,%f:%l:%c:\ %tarning[K%n]:\ %m,%f:%l:%c:\ %tote[K%n]:\ %m,%f:%l:%c:\ %tote:\ %m,%-G%.%#

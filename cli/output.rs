@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use crate::args::Color;
-use crate::foreign::visible;
+use crate::foreign::{one_line, visible};
 
 /// The exit status of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -39,7 +39,7 @@ pub(crate) fn deliver(text: &str, file: Option<&str>) -> io::Result<Status> {
 
 /// Prints a line for people to standard output.
 pub(crate) fn print_line(text: &str) -> io::Result<()> {
-    print(&format!("{}\n", visible(text)))
+    print(&format!("{}\n", one_line(text)))
 }
 
 /// Prints a text for people to standard error.

@@ -10,7 +10,7 @@ use kirk_compiler::{Diagnostic, LineIndex, Severity, Source, Span, Suggestion};
 use serde::Serialize;
 
 use crate::args::{Color, Common};
-use crate::foreign::{as_long, one_line, visible};
+use crate::foreign::{as_long, one_line};
 use crate::output::print_line;
 
 /// The sources that diagnostics point into.
@@ -86,7 +86,7 @@ impl<'a> Reporter<'a> {
         };
         let mut cooked = codespan::Diagnostic::new(severity)
             .with_code(diagnostic.code.to_string())
-            .with_message(visible(&diagnostic.message));
+            .with_message(one_line(&diagnostic.message));
         let places = std::iter::once((diagnostic.span, &diagnostic.primary))
             .chain(diagnostic.labels.iter().map(|label| (label.span, &label.message)));
         for (index, (span, message)) in places.enumerate() {
@@ -95,16 +95,16 @@ impl<'a> Reporter<'a> {
                 let style =
                     if index == 0 { codespan::LabelStyle::Primary } else { codespan::LabelStyle::Secondary };
                 cooked.labels.push(
-                    codespan::Label::new(style, span.source as usize, range).with_message(visible(message)),
+                    codespan::Label::new(style, span.source as usize, range).with_message(one_line(message)),
                 );
             } else if let Some((line, column)) = self.position(span.source, span.start) {
                 let name = &self.sources[span.source as usize].name;
                 let message = if message.is_empty() { "here" } else { message };
-                cooked.notes.push(visible(&format!("{name}:{line}:{column}: {message}")).into_owned());
+                cooked.notes.push(one_line(&format!("{name}:{line}:{column}: {message}")).into_owned());
             }
         }
         if let Some(help) = &diagnostic.help {
-            cooked.notes.push(visible(help).into_owned());
+            cooked.notes.push(one_line(help).into_owned());
         }
         cooked
     }

@@ -62,6 +62,26 @@ fn names_that_a_terminal_would_obey_are_spelt_out() {
 }
 
 #[test]
+fn a_name_of_several_lines_is_one_line_of_a_message() {
+    let events = format!(
+        r#""format": "kirk-network/1", "name": "{NAME}", "origin": "go", "events": ["go", "{NAME}"]"#
+    );
+    let from_to = format!(r#""from": "go", "to": "{NAME}""#);
+    let late = format!(
+        r#"{{{events}, "requirements": [{{{from_to}, "upper": 1}}], "contingents": [{{{from_to}, "lower": 1, "upper": 2}}]}}"#
+    );
+    let unknown = format!(r#"{{{events}, "requirements": [{{"from": "go", "to": "{NAME}!", "upper": 1}}]}}"#);
+    let twice = format!(r#"{{{events}, "contingents": [{{{from_to}, "lower": 3, "upper": 2}}]}}"#);
+    for text in [late, unknown, twice] {
+        let network = file(".json", text.as_bytes());
+        let output = kirk(&["check", network.path().to_str().unwrap()]);
+        let told = stdout(&output) + &stderr(&output);
+        let forged = told.lines().any(|line| line.starts_with("main: controllable"));
+        assert!(!forged && told.contains("K0"), "{told}");
+    }
+}
+
+#[test]
 fn what_news_and_drivers_say_is_spelt_out() {
     let say = r"printf 'a\033[2Jb\342\200\256c\n'; exit 3";
     let arguments = ["run", "tests/live/once.rmpl", "--speed", "10", "--driver-command", say];

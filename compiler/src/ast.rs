@@ -497,6 +497,13 @@ impl Serialize for Ident {
     }
 }
 
+impl AmountKind {
+    /// True if it could not be read, which has been reported.
+    pub fn is_error(&self) -> bool {
+        matches!(self, AmountKind::Error)
+    }
+}
+
 impl Serialize for Amount {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match &self.kind {

@@ -261,7 +261,7 @@ pub fn events_of(root: &Episode) -> Vec<(&Episode, Ends)> {
 }
 
 /// The name a user knows an episode by.
-fn called(episode: &Episode) -> String {
+pub(crate) fn called(episode: &Episode) -> String {
     match (episode.internal, episode.labels.first()) {
         (_, Some(label)) => format!("`{label}`"),
         (false, None) => format!("`{}`", episode.name),

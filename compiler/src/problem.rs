@@ -23,6 +23,8 @@ pub struct Problems {
     lost_words: HashSet<String>,
     /// Forms that were not read to their end: what else is wrong with them follows from that.
     muted: BTreeSet<(u32, u32, u32)>,
+    /// Places at which one text ends and another begins, though both are in one source.
+    parts: BTreeSet<(u32, u32)>,
 }
 
 impl Problems {
@@ -55,6 +57,17 @@ impl Problems {
     fn is_muted(&self, span: Span) -> bool {
         let before = self.muted.range(..=(span.source, span.start, u32::MAX)).next_back();
         before.is_some_and(|(source, _, end)| *source == span.source && span.end <= *end)
+    }
+
+    /// Says that another text begins here, in the same source.
+    pub fn part(&mut self, at: Span) {
+        self.parts.insert((at.source, at.start));
+    }
+
+    /// True if the two places, in this order, are in different texts of one source: what is there twice may be meant so.
+    pub fn are_apart(&self, first: Span, second: Span) -> bool {
+        let between = (first.source, first.start)..(second.source, second.start.max(first.start));
+        first.source == second.source && self.parts.range(between).next().is_some()
     }
 
     /// Says that definitions may have been lost with what could not be read: what is missing is not worth a message then.

@@ -74,6 +74,14 @@ struct Open {
     line_item: Option<(usize, usize)>,
 }
 
+/// A form whose contents are indented as if it had been closed before.
+#[derive(Clone, Copy)]
+struct Suspect {
+    at: usize,
+    /// Where it would be closed then.
+    end: usize,
+}
+
 /// What opened a form.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Mark {
@@ -104,7 +112,7 @@ struct Reader<'a> {
     /// How many parentheses beyond the nesting limit are open; what is inside them is not built.
     skipped: usize,
     /// The first form whose contents are indented as if it had been closed.
-    suspect: Option<usize>,
+    suspect: Option<Suspect>,
     /// The first line that is indented as if a form that is closed were still open: that form, and the line.
     closed_early: Option<(usize, usize)>,
     /// True if the nesting limit has been reported for this top-level form.
@@ -143,6 +151,7 @@ impl<'a> Reader<'a> {
             last_end = token.end;
             match token.kind {
                 Kind::End => break,
+                _ if self.is_at_prompt(token) => self.prompt(token),
                 Kind::Open => self.open(token),
                 Kind::Close => self.close(token),
                 Kind::Quote if self.stack.is_empty() => self.stray(token),
@@ -216,7 +225,7 @@ impl<'a> Reader<'a> {
                 .stack
                 .last()
                 .filter(|top| !top.mark.is_prefix() && column <= top.column)
-                .map(|top| top.at);
+                .map(|top| Suspect { at: top.at, end: self.last_end });
         }
         self.note_item(at);
         self.stack.push(Open { at, column, mark, items: Vec::new(), line_item: None });

@@ -148,6 +148,8 @@ fn long_programs_are_compiled_in_linear_time() {
         result(&"x (".repeat(100_000));
         result(&")(".repeat(100_000));
         result(&"\"a\n".repeat(100_000));
+        result(&format!("(define-control-program main () (a {}))", "1,".repeat(200_000)));
+        result(&format!("(define-control-program main () (a {}))", "‘ ".repeat(100_000)));
         result(&format!("(define-control-program main () {})", "(missing) ".repeat(100_000)));
         let programs: String =
             (0..20_000).map(|n| format!("(define-control-program p{n} () (q{n}))\n")).collect();

@@ -7,10 +7,12 @@ use std::collections::BTreeMap;
 
 use kirk_compiler::{Code, Diagnostic, Severity};
 
-/// Problems that hide another one, which is told once they are put right: a name misspelt twice, programs that do nothing.
-const UNCOVERED: [(&str, &str); 3] = [
+/// Problems that hide another one, which is told once they are put right: a name misspelt twice, programs that do
+/// nothing, two missions that are one text then.
+const UNCOVERED: [(&str, &str); 4] = [
     ("K0307-imported", "the package `tools` has no `wayt`"),
     ("K0205-wrong-shape", "the plain name of the program was expected, not a string"),
+    ("K0108-prompt-between-missions", "this is what was typed at a shell prompt, not RMPL"),
     ("K0205-wrong-shape", "`(simple ...)` was expected, not a list"),
 ];
 

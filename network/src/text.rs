@@ -46,6 +46,10 @@ pub fn network(network: &Network) -> String {
     text
 }
 
+fn counted(count: usize, thing: &str) -> String {
+    if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
+}
+
 fn interval(lower: Bound, upper: Bound) -> String {
     let bound = |bound: Bound, infinite: &str| bound.finite().map_or(infinite.to_string(), |b| b.to_string());
     format!("[{}, {}]", bound(lower, "-inf"), bound(upper, "inf"))
@@ -55,11 +59,11 @@ fn interval(lower: Bound, upper: Bound) -> String {
 pub fn dispatchable(net: &Dispatchable, label: impl Fn(u32) -> String) -> String {
     let seconds = Duration::from_micros;
     let mut text = format!(
-        "dispatchable network: {} nodes, {} edges, {} waits, {} contingent links\n\nedges\n",
-        net.nodes,
-        net.edges.len(),
-        net.waits.len(),
-        net.links.len()
+        "dispatchable network: {}, {}, {}, {}\n\nedges\n",
+        counted(net.nodes as usize, "node"),
+        counted(net.edges.len(), "edge"),
+        counted(net.waits.len(), "wait"),
+        counted(net.links.len(), "contingent link")
     );
     for edge in &net.edges {
         let _ = writeln!(text, "  {} -> {} {}", label(edge.from), label(edge.to), seconds(edge.weight));

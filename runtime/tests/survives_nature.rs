@@ -263,7 +263,7 @@ fn every_decision_is_known_to_be_over_in_time_order() {
 /// What becomes of a record when one thing in it is changed, and what the verifier has to say of that.
 type Slip = (&'static str, fn(&mut Execution) -> bool);
 
-const SLIPS: [Slip; 5] = [
+const SLIPS: [Slip; 14] = [
     ("not in time order", |execution| {
         let later = (1..execution.rows.len()).find(|&at| {
             let pair = (execution.rows[at - 1].time, execution.rows[at].time);
@@ -283,7 +283,52 @@ const SLIPS: [Slip; 5] = [
         true
     }),
     ("has no row", |execution| execution.rows.pop().is_some()),
+    ("has more than one row", |execution| {
+        execution.rows.last().cloned().is_some_and(|row| {
+            execution.rows.push(row);
+            true
+        })
+    }),
+    ("there is no event", |execution| {
+        execution.rows.last_mut().map(|row| row.event.push_str(":never")).is_some()
+    }),
+    ("its row is not that of a dispatched event", |execution| {
+        of(execution, How::Dispatched).map(|row| row.how = How::Observed).is_some()
+    }),
+    ("is dispatched, but true at another time", |execution| {
+        of(execution, How::Dispatched).map(|row| row.truth = row.truth.map(later)).is_some()
+    }),
+    ("do not fit `dispatched`", |execution| {
+        of(execution, How::Observed).map(|row| row.how = How::Dispatched).is_some()
+    }),
+    ("do not fit `observed`", |execution| {
+        of(execution, How::Observed).map(|row| row.observed = Some(None)).is_some()
+    }),
+    ("is said to have happened in", |execution| {
+        // Of one event, all rows say the same.
+        let Some(first) = execution.rows.iter().find_map(|row| row.happened) else { return false };
+        let alike = execution.rows.iter_mut().filter_map(|row| row.happened.as_mut());
+        alike.filter(|claim| **claim == first).for_each(|claim| claim.0 = later(claim.0));
+        true
+    }),
+    ("do not fit `never`", |execution| {
+        of(execution, How::Observed).map(|row| row.how = How::Never).is_some()
+    }),
+    ("is recorded as failed", |execution| {
+        execution.outcome = Outcome::Failed;
+        true
+    }),
 ];
+
+/// The first row of this kind.
+fn of(execution: &mut Execution, how: How) -> Option<&mut Row> {
+    execution.rows.iter_mut().find(|row| row.how == how)
+}
+
+/// As little later as can be said.
+fn later(time: Seconds) -> Seconds {
+    Seconds(Duration::from_micros(time.0.as_micros() + 1))
+}
 
 #[test]
 fn the_verifier_names_every_slip_in_a_record() {

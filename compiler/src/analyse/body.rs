@@ -178,7 +178,9 @@ impl Analyser<'_> {
         };
         let target = &self.program.programs[program];
         let (wanted, given) = (target.parameters.len(), call.arguments.len());
-        if wanted != given && !target.damaged {
+        let unread =
+            |argument: &ast::Argument| matches!(argument, ast::Argument::Amount(it) if it.kind.is_error());
+        if wanted != given && !target.damaged && !call.arguments.iter().any(unread) {
             let count = |n: usize| if n == 1 { "1 argument".to_string() } else { format!("{n} arguments") };
             let name = clip(&target.name.name);
             self.problems.push(

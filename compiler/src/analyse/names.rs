@@ -258,9 +258,8 @@ fn fill<'a>(
     for (index, (home, name)) in definitions.enumerate() {
         let key = (home.as_str(), name.name.as_str());
         match firsts.get(&key) {
-            Some(first) => {
-                problems.push(defined_twice(what, name, *first));
-            }
+            Some(first) if problems.are_apart(*first, name.span) => {}
+            Some(first) => problems.push(defined_twice(what, name, *first)),
             None => {
                 firsts.insert(key, name.span);
                 table.insert((home.clone(), name.name.clone()), index);

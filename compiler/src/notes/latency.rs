@@ -10,7 +10,7 @@ use crate::diagnostic::Diagnostic;
 use crate::episode::{Episode, Kind};
 use crate::explain::{say, sum};
 use crate::form::clip;
-use crate::lower::{Origins, events_of};
+use crate::lower::{Origins, called, events_of};
 use crate::source::Span;
 
 /// Networks of more events than this are not looked at: it takes as long as the verdict, and nobody wrote them by hand.
@@ -50,11 +50,11 @@ fn note(
     });
     let (episode, exact, shares) = late.next()?;
     let name = clip(&episode.name);
-    let when = names.moment(group, exact.after, network);
+    let (when, moment) = names.moment(group, exact.after, network);
     let message = format!("`{name}` can never start late: it has to start {when}");
     let mut note = Diagnostic::note(Code::NeverLate, episode.span, message)
         .primary("the first moment at which this can start is also the last");
-    let mut places: Vec<(Span, String)> = Vec::new();
+    let mut places: Vec<(Span, String)> = moment.into_iter().collect();
     for share in shares.iter().filter(|share| share.amount != Duration::ZERO) {
         places.extend(say(share, network, origins).filter(|place| !places.contains(place)));
     }
@@ -97,8 +97,15 @@ impl<'a> Names<'a> {
         starting.copied().find(|episode| episode.kind == Kind::Primitive)
     }
 
-    /// "exactly 5 s after `a` ends".
-    fn moment(&self, group: &Group, after: Duration, network: &Network) -> String {
+    /// The form a user gave no name to that starts or ends there: its end, if that is it.
+    fn form(&self, events: &[EventId]) -> Option<(&'a Episode, bool)> {
+        let ending = events.iter().find_map(|event| Some((*self.ends.get(event)?, true)));
+        ending.or_else(|| events.iter().find_map(|event| Some((*self.starts.get(event)?, false))))
+    }
+
+    /// "exactly 5 s after `a` ends", and where that is, if its name does not say it.
+    fn moment(&self, group: &Group, after: Duration, network: &Network) -> (String, Option<(Span, String)>) {
+        let mut place = None;
         let ending = group
             .first
             .iter()
@@ -113,15 +120,23 @@ impl<'a> Names<'a> {
                 (Some(before), _) if before.contingent => format!("`{}` ends", clip(&before.name)),
                 (_, Some(start)) => format!("`{}` starts", clip(&start.name)),
                 (Some(before), None) => format!("`{}` ends", clip(&before.name)),
-                (None, None) => {
-                    let name = group.first.first().map_or("", |event| network.id(*event));
-                    format!("`{}` happens", clip(name))
-                }
+                (None, None) => match self.form(&group.first) {
+                    Some((episode, end)) => {
+                        let happens = if end { "ends" } else { "starts" };
+                        let called = called(episode);
+                        if episode.internal {
+                            place = Some((episode.span, format!("{called} that {happens} then")));
+                        }
+                        format!("{called} {happens}")
+                    }
+                    None => "this can happen".to_string(),
+                },
             }
         };
-        match after == Duration::ZERO {
+        let when = match after == Duration::ZERO {
             true => format!("the moment {what}"),
             false => format!("exactly {after} s after {what}"),
-        }
+        };
+        (when, place)
     }
 }

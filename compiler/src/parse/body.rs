@@ -70,12 +70,12 @@ fn call(form: &Form, first: &Form, rest: &[Form], problems: &mut Problems) -> Op
 
 /// The arguments of a call or of a label.
 pub(super) fn arguments(forms: &[Form], problems: &mut Problems) -> Vec<Argument> {
-    forms.iter().filter(|form| !form.is_error()).map(|form| argument(form, problems)).collect()
+    forms.iter().map(|form| argument(form, problems)).collect()
 }
 
 /// An argument: a number to calculate, or a value.
 pub(super) fn argument(form: &Form, problems: &mut Problems) -> Argument {
-    match is_calculation(form) || slips::amount::is_clock(form) {
+    match form.is_error() || is_calculation(form) || slips::amount::is_clock(form) {
         true => Argument::Amount(amount(form, "this argument", problems)),
         false => Argument::Value(value(form)),
     }

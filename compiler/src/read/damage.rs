@@ -1,6 +1,6 @@
 //! What is damaged in a text: parentheses that do not pair, words outside of all forms, characters without a meaning.
 
-use super::foreign::{begins_definition, foreign_line};
+use super::foreign::{begins_definition, foreign_line, is_prompt};
 use super::{Kind, Reader, Token};
 use crate::code::Code;
 use crate::diagnostic::{Diagnostic, Edit};
@@ -8,12 +8,40 @@ use crate::form::{Form, FormKind, clip};
 use crate::source::Span;
 
 impl Reader<'_> {
+    /// True if a line begins with this token that was typed at the prompt of a shell. What was typed outside of all forms is stray
+    /// text, unless it begins with a parenthesis.
+    pub(super) fn is_at_prompt(&self, token: Token) -> bool {
+        token.start == self.line_start
+            && (token.kind == Kind::Open || !self.stack.is_empty())
+            && is_prompt(self.text[token.start..].lines().next().unwrap_or(""))
+    }
+
+    /// Reports what was typed at a prompt: inside a form one line, which is left out.
+    pub(super) fn prompt(&mut self, token: Token) {
+        if self.stack.is_empty() {
+            self.stray(token);
+            return;
+        }
+        let line = self.text[token.start..].lines().next().unwrap_or("").trim_end();
+        let span = self.span(token.start, token.start + line.len());
+        self.pasted(span);
+        let problem = foreign("what was typed at a shell prompt", span);
+        self.problems.push(problem.suggest("Make a comment of it", [Edit::before(span, "; ")]));
+        self.tokens.seek(token.start + line.len());
+    }
+
+    /// Notes that what follows may be another text, and that not all of it may be there.
+    fn pasted(&mut self, span: Span) {
+        self.problems.part(span);
+        self.problems.lose_definitions();
+    }
+
     /// Reports the form that is open and gives up all that are.
     pub(super) fn unclosed(&mut self, next: Option<usize>) {
         let outermost = self.stack.first().map_or(0, |open| open.at);
         let innermost =
             self.stack.iter().rev().find(|open| !open.mark.is_prefix()).map_or(outermost, |open| open.at);
-        let at = self.suspect.unwrap_or(innermost);
+        let at = self.suspect.map_or(innermost, |suspect| suspect.at);
         let missing = self.stack.iter().filter(|open| !open.mark.is_prefix()).count() + self.skipped;
         // A definition is shown with its name.
         let words = if begins_definition(&self.text[at..]) { 2 } else { 1 };
@@ -43,9 +71,13 @@ impl Reader<'_> {
             }
             None => problem.help("The text ends while it is still open: is the end of the file missing?"),
         };
-        // Where the lines are indented as if a form inside were closed, only its author knows where it is to end.
-        if self.suspect.is_none() && self.skipped == 0 {
-            let end = self.span(self.last_end, self.last_end);
+        // Where the lines are indented as if a form inside were closed, it ends before them, if it is the only one.
+        let close_at = match self.suspect {
+            Some(suspect) => (missing == 1).then_some(suspect.end),
+            None => Some(self.last_end),
+        };
+        if let Some(end) = close_at.filter(|_| self.skipped == 0) {
+            let end = self.span(end, end);
             problem = problem.suggest("Close what is open", [Edit::before(end, ")".repeat(missing))]);
         }
         self.problems.push(problem);
@@ -115,6 +147,13 @@ impl Reader<'_> {
         if !fell_out && closed_early.is_none() {
             problem = problem.take_out("what closes nothing", self.span(token.start, end));
         }
+        let parentheses = ")".repeat(count);
+        if let Some(close) = closed_at.filter(|_| fell_out)
+            && self.text[..close].ends_with(&parentheses)
+        {
+            let what = format!("`{parentheses}` at the end of the definition");
+            problem = problem.take_out(&what, self.span(close - count, close));
+        }
         if let Some((item, line)) = closed_early {
             let word = self.text[item..].split(|c: char| c.is_whitespace() || c == ')').next().unwrap_or("");
             let message = format!(
@@ -132,14 +171,17 @@ impl Reader<'_> {
 
     /// Text outside all forms: reported once for a run of lines, which is left out.
     pub(super) fn stray(&mut self, token: Token) {
+        let typed = is_prompt(self.text[token.start..].lines().next().unwrap_or(""));
         let mut end = token.start;
         for line in self.text[token.start..].split_inclusive('\n') {
             let continues = end == token.start || !(line.starts_with(['(', ';']) || line.starts_with("#|"));
             if !continues {
                 break;
             }
-            if let Some(definition) = line.match_indices('(').find(|(at, _)| begins_definition(&line[*at..]))
-            {
+            // What a command prints may quote a definition; one that follows it begins a line.
+            let may_begin = |at: usize| !typed || line[..at].trim_start().is_empty();
+            let mut marks = line.match_indices('(').filter(|(at, _)| may_begin(*at));
+            if let Some(definition) = marks.find(|(at, _)| begins_definition(&line[*at..])) {
                 end += definition.0;
                 break;
             }
@@ -157,10 +199,11 @@ impl Reader<'_> {
             .collect();
         let first = shown.lines().next().unwrap_or("");
         let span = self.span(token.start, token.start + first.trim_end().len());
+        if typed {
+            self.pasted(span);
+        }
         let problem = match foreign_line(first) {
-            Some(what) => Diagnostic::error(Code::NotRmpl, span, format!("this is {what}, not RMPL"))
-                .primary("a definition in parentheses was expected here")
-                .help("Take it out, or put `;` in front of it to make it a comment."),
+            Some(what) => foreign(what, span),
             None => Diagnostic::error(
                 Code::StrayText,
                 span,
@@ -179,10 +222,22 @@ impl Reader<'_> {
     }
 }
 
+/// A line of another language.
+fn foreign(what: &str, span: Span) -> Diagnostic {
+    Diagnostic::error(Code::NotRmpl, span, format!("this is {what}, not RMPL"))
+        .primary("a definition in parentheses was expected here")
+        .help("Take it out, or put `;` in front of it to make it a comment.")
+}
+
 /// A number at the beginning of a text that has commas in it: its length, what was meant, and what the commas are there for.
 pub(super) fn with_comma(text: &str) -> Option<(usize, String, &'static str)> {
-    let end =
-        text.find(|c: char| !c.is_ascii_digit() && !matches!(c, ',' | '.' | '+' | '-')).unwrap_or(text.len());
+    /// What is longer is no number.
+    const LONGEST: usize = 100;
+    let of_number = |b: &u8| b.is_ascii_digit() || matches!(b, b',' | b'.' | b'+' | b'-');
+    let end = text.bytes().take(LONGEST + 1).take_while(of_number).count();
+    if end > LONGEST {
+        return None;
+    }
     let number = text[..end].trim_end_matches(',');
     let after = &text[number.len()..];
     let ends = after.is_empty()
@@ -198,6 +253,9 @@ pub(super) fn with_comma(text: &str) -> Option<(usize, String, &'static str)> {
     match (thousands, decimals) {
         (true, decimals) if decimals.is_none_or(digits) => {
             Some((number.len(), number.replace(',', ""), "a comma between thousands"))
+        }
+        (false, None) if groups.contains(',') => {
+            Some((number.len(), number.replace(',', " "), "commas between numbers"))
         }
         (false, None) if digits(groups) => {
             Some((number.len(), number.replace(',', "."), "a comma before decimals"))

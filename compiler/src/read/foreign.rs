@@ -49,11 +49,9 @@ pub(super) fn foreign_line(line: &str) -> Option<&'static str> {
     let line = line.trim();
     let first = line.split_whitespace().next().unwrap_or("");
     let starts = |words: &[&str]| words.iter().any(|word| line.starts_with(word));
-    let prompt = |c: char| line.strip_prefix(c).is_some_and(|rest| rest.starts_with(' '));
     Some(if line.starts_with("#!") {
         "a script for another program"
-    } else if prompt('$') || prompt('%') || prompt('>') || is_user_prompt(line) || starts(&["PS C:", "C:\\"])
-    {
+    } else if is_prompt(line) {
         "what was typed at a shell prompt"
     } else if starts(&["kirk run", "kirk check", "kirk compile", "cargo ", "git ", "sudo ", "curl "]) {
         "a command for the shell"
@@ -139,7 +137,7 @@ pub(super) fn foreign_token(text: &str) -> Option<Found> {
         _ => return None,
     };
     let open = first.len_utf8();
-    let end = text[open..].char_indices().find(|(_, c)| closing.contains(c) || *c == '\n');
+    let end = text[open..].char_indices().take(NEAR).find(|(_, c)| closing.contains(c) || *c == '\n');
     match end.filter(|(_, c)| *c != '\n') {
         Some((at, c)) => {
             let (length, close) = (open + at + c.len_utf8(), c.len_utf8());
@@ -188,6 +186,23 @@ fn first_line(text: &str) -> Option<(usize, &str)> {
         at += line.len();
     }
     None
+}
+
+/// True of a line that was typed at the prompt of a shell: `$ kirk check`, `(base) user@host:~$ kirk check`, `~/missions $ kirk`.
+pub(super) fn is_prompt(line: &str) -> bool {
+    let line = line.trim();
+    // The environment of Python or conda that is active, or the bracket some systems begin with.
+    let line = match line.strip_prefix('(').and_then(|rest| rest.split_once(") ")) {
+        Some((environment, rest)) if !environment.contains([' ', '(']) => rest.trim_start(),
+        _ => line.strip_prefix('[').unwrap_or(line),
+    };
+    let first = line.split(' ').next().unwrap_or("");
+    let is_path = first.starts_with('~') || first.starts_with('/');
+    matches!(first, "$" | "%" | ">" | ">>>" | "❯" | "➜") && first != line
+        || first.len() > 1 && first.ends_with('$') && first != line && !first.contains(['(', ')'])
+        || is_path && [" $ ", " % ", " # ", " ❯ "].iter().any(|mark| line.contains(mark))
+        || ["PS C:", "C:\\"].iter().any(|start| line.starts_with(start))
+        || is_user_prompt(line)
 }
 
 /// `user@host:~$ command`.

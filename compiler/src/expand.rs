@@ -8,7 +8,7 @@ mod scope;
 
 use kirk_network::{Bound, Duration};
 
-use crate::ast::{Condition, Ident, Value, ValueKind};
+use crate::ast::{Condition, Ident, Limits, Value, ValueKind};
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::episode::{Episode, Interval, Kind};
@@ -127,7 +127,7 @@ impl<'a> Expander<'a> {
 
     fn primitive(&mut self, episode: &mut Episode, timing: &Timing, place: &Place<'_>) {
         episode.kind = Kind::Primitive;
-        episode.duration = Some(self.interval(&timing.bounds, place, "the lower bound", "the upper bound"));
+        episode.duration = Some(self.interval(&timing.bounds, place, Limits::Duration));
         episode.contingent = timing.contingent;
         if timing.contingent {
             if episode.duration.as_ref().is_some_and(|duration| duration.upper == Bound::Infinite) {
@@ -139,8 +139,7 @@ impl<'a> Expander<'a> {
                         .label(place.call, "with the arguments of this call"),
                 );
             }
-            let (least, most) = ("the shortest observation delay", "the longest observation delay");
-            let delay = self.interval(&timing.delay, place, least, most);
+            let delay = self.interval(&timing.delay, place, Limits::ObservationDelay);
             if delay.lower != Duration::ZERO || delay.upper != Bound::Finite(Duration::ZERO) {
                 episode.delay = Some(delay);
             }
@@ -194,14 +193,13 @@ impl<'a> Expander<'a> {
             }
             Body::Within { bounds, body, operator } => {
                 let mut episode = self.internal(Kind::WithTemporalConstraint, *operator, place);
-                episode.duration = Some(self.interval(bounds, place, "the lower bound", "the upper bound"));
+                episode.duration = Some(self.interval(bounds, place, Limits::Duration));
                 episode.parts = self.parts(body, place);
                 episode
             }
             Body::Delay { bounds, span } => {
                 let mut episode = self.internal(Kind::Delay, *span, place);
-                episode.duration =
-                    Some(self.interval(bounds, place, "the shortest wait", "the longest wait"));
+                episode.duration = Some(self.interval(bounds, place, Limits::Wait));
                 episode
             }
             _ => self.internal(Kind::Sequence, place.call, place),
@@ -288,7 +286,7 @@ impl<'a> Expander<'a> {
         if self.repetitions > MAX_EPISODES {
             self.give_up(from.span, "constraints", Some(place.call));
         }
-        let interval = self.signed_interval(bounds, place, "the lower bound", "the upper bound");
+        let interval = self.signed_interval(bounds, place, Limits::Duration);
         let mut arguments =
             |event: &EventOf| event.arguments.as_ref().map(|arguments| self.values(arguments, place));
         let (from, to) = ((from, arguments(from)), (to, arguments(to)));

@@ -1,7 +1,7 @@
 //! The forms of a body: what is called, with which values, and which events are meant.
 
 use super::Analyser;
-use crate::ast;
+use crate::ast::{self, Limits};
 use crate::code::Code;
 use crate::diagnostic::{Diagnostic, Edit};
 use crate::evaluate;
@@ -34,13 +34,13 @@ impl Analyser<'_> {
 
     #[inline(never)]
     fn within(&mut self, within: &ast::Within) -> Body {
-        let bounds = self.bounds(&within.bounds, "the lower bound", "the upper bound");
+        let bounds = self.bounds(&within.bounds, Limits::Duration);
         Body::Within { bounds, body: self.bodies(&within.body), operator: within.operator }
     }
 
     #[inline(never)]
     fn wait(&mut self, wait: &ast::Wait) -> Body {
-        let bounds = self.bounds(&wait.bounds, "the shortest wait", "the longest wait");
+        let bounds = self.bounds(&wait.bounds, Limits::Wait);
         Body::Delay { bounds, span: wait.span }
     }
 
@@ -109,7 +109,7 @@ impl Analyser<'_> {
 
     #[inline(never)]
     fn between(&mut self, between: &ast::Between) -> Option<Body> {
-        let bounds = self.signed_bounds(&between.bounds, "the lower bound", "the upper bound");
+        let bounds = self.signed_bounds(&between.bounds, Limits::Duration);
         let from = self.event(&between.from);
         let to = self.event(&between.to);
         Some(Body::Between(Box::new(Between { from: from?, to: to?, bounds })))

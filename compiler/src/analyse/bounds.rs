@@ -3,7 +3,7 @@
 use kirk_network::{Bound, Duration};
 
 use super::Analyser;
-use crate::ast;
+use crate::ast::{self, Limits};
 use crate::code::Code;
 use crate::diagnostic::{Diagnostic, Edit};
 use crate::form::clip;
@@ -21,7 +21,7 @@ impl Analyser<'_> {
             let delay = Bounds { lower: nothing(span), upper: nothing(span), span };
             return Timing { bounds: Bounds { lower: nothing(span), upper, span }, contingent: false, delay };
         };
-        let bounds = self.bounds(&duration.bounds, "the lower bound", "the upper bound");
+        let bounds = self.bounds(&duration.bounds, Limits::Duration);
         let name = clip(&definition.name.name);
         if duration.contingent && bounds.upper.value.is(Bound::Infinite) {
             self.problems.push(
@@ -70,8 +70,9 @@ impl Analyser<'_> {
     }
 
     /// Resolves both bounds, which are not negative; a missing lower bound is 0, a missing upper bound none.
-    pub(super) fn bounds(&mut self, written: &ast::Bounds, low: &str, high: &str) -> Bounds {
-        let bounds = self.signed_bounds(written, low, high);
+    pub(super) fn bounds(&mut self, written: &ast::Bounds, limits: Limits) -> Bounds {
+        let bounds = self.signed_bounds(written, limits);
+        let [low, high] = limits.words();
         let both = [(&bounds.lower, &written.lower, low), (&bounds.upper, &written.upper, high)];
         for (amount, written, what) in both {
             if let Some(problem) = amount.value.seconds().and_then(|value| negative(value, amount.span, what))
@@ -84,7 +85,8 @@ impl Analyser<'_> {
     }
 
     /// Resolves both bounds.
-    pub(super) fn signed_bounds(&mut self, written: &ast::Bounds, low: &str, high: &str) -> Bounds {
+    pub(super) fn signed_bounds(&mut self, written: &ast::Bounds, limits: Limits) -> Bounds {
+        let [low, high] = limits.words();
         let lower = self.amount(written.lower.as_ref(), Bound::Finite(Duration::ZERO), written.span, low);
         let upper = self.amount(written.upper.as_ref(), Bound::Infinite, written.span, high);
         let bounds = Bounds { lower, upper, span: written.span };
@@ -95,7 +97,7 @@ impl Analyser<'_> {
                     .help("Only an upper bound may be `:infinity`."),
             );
         } else if let (Some(least), Some(most)) = (bounds.lower.value.seconds(), bounds.upper.value.seconds())
-            && let Some(problem) = reversed(least, most, &bounds, low, high)
+            && let Some(problem) = reversed(least, most, &bounds, limits)
         {
             let help = "Without a `:lower-bound`, it is 0: the first event comes first. For the other way round, swap the two events.";
             let problem = match (&written.lower, &written.upper) {
@@ -129,8 +131,8 @@ impl Analyser<'_> {
     }
 
     fn delay(&mut self, written: &ast::Bounds) -> Bounds {
-        let (low, high) = ("the shortest observation delay", "the longest observation delay");
-        let mut bounds = self.bounds(written, low, high);
+        let [_, high] = Limits::ObservationDelay.words();
+        let mut bounds = self.bounds(written, Limits::ObservationDelay);
         if written.upper.is_none() {
             bounds.upper.value = AmountValue::Known(Bound::Finite(Duration::ZERO));
             if !bounds.lower.value.is(Bound::Finite(Duration::ZERO)) {
@@ -168,10 +170,13 @@ pub(crate) fn reversed(
     least: Duration,
     most: Duration,
     bounds: &Bounds,
-    low: &str,
-    high: &str,
+    limits: Limits,
 ) -> Option<Diagnostic> {
-    let code = if low.contains("delay") { Code::DelayReversed } else { Code::LowerAboveUpper };
+    let code = match limits {
+        Limits::ObservationDelay => Code::DelayReversed,
+        Limits::Duration | Limits::Wait => Code::LowerAboveUpper,
+    };
+    let [low, high] = limits.words();
     (least > most).then(|| {
         Diagnostic::error(code, bounds.lower.span, format!("{low} ({least} s) is above {high} ({most} s)"))
             .primary("this is the larger one")

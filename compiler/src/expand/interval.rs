@@ -4,7 +4,7 @@ use kirk_network::{Bound, Duration};
 
 use super::{Expander, Place};
 use crate::analyse::{negative, reversed};
-use crate::ast::{Value, ValueKind};
+use crate::ast::{Limits, Value, ValueKind};
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::episode::Interval;
@@ -14,13 +14,12 @@ use crate::typed::{Amount, AmountValue, Bounds, Expression, ExpressionKind};
 
 impl Expander<'_> {
     /// The numbers of an interval of durations, which are not negative.
-    pub(super) fn interval(&mut self, bounds: &Bounds, place: &Place<'_>, low: &str, high: &str) -> Interval {
-        let mut interval = self.signed_interval(bounds, place, low, high);
-        for (amount, what) in [(&bounds.lower, low), (&bounds.upper, high)] {
-            let value = match what == low {
-                true => Some(interval.lower),
-                false => interval.upper.finite(),
-            };
+    pub(super) fn interval(&mut self, bounds: &Bounds, place: &Place<'_>, limits: Limits) -> Interval {
+        let mut interval = self.signed_interval(bounds, place, limits);
+        let [low, high] = limits.words();
+        let both =
+            [(&bounds.lower, Some(interval.lower), low), (&bounds.upper, interval.upper.finite(), high)];
+        for (amount, value, what) in both {
             // What was known before has been reported before.
             if let (Some(value), AmountValue::Computed(expression)) = (value, &amount.value)
                 && let Some(problem) = negative(value, argument(expression, place, amount.span), what)
@@ -36,13 +35,8 @@ impl Expander<'_> {
     }
 
     /// The numbers of an interval.
-    pub(super) fn signed_interval(
-        &mut self,
-        bounds: &Bounds,
-        place: &Place<'_>,
-        low: &str,
-        high: &str,
-    ) -> Interval {
+    pub(super) fn signed_interval(&mut self, bounds: &Bounds, place: &Place<'_>, limits: Limits) -> Interval {
+        let [low, high] = limits.words();
         let lower = match self.bound(&bounds.lower, place, low) {
             Some(Bound::Finite(lower)) => lower,
             Some(Bound::Infinite) => {
@@ -58,7 +52,7 @@ impl Expander<'_> {
         };
         let mut upper = self.bound(&bounds.upper, place, high).unwrap_or(Bound::Finite(lower));
         if let Bound::Finite(most) = upper
-            && let Some(problem) = reversed(lower, most, bounds, low, high)
+            && let Some(problem) = reversed(lower, most, bounds, limits)
         {
             self.problems.push(problem.label(place.call, "with the arguments of this call"));
             upper = Bound::Finite(lower);

@@ -4,7 +4,7 @@ use super::amount::{amount, is_calculation, is_name, number};
 use super::options::{flag, options};
 use super::slips::{self, text_of};
 use super::{binding, ident, label};
-use crate::ast::{Argument, Body, Bounds, Call, Group, Value, ValueKind, Wait, Within};
+use crate::ast::{Argument, Body, Bounds, Call, Group, Limits, Value, ValueKind, Wait, Within};
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::form::{Form, FormKind};
@@ -161,8 +161,9 @@ pub(super) fn bounds(form: &Form, problems: &mut Problems) -> Option<Bounds> {
 /// `:lower-bound l :upper-bound u`.
 pub(super) fn limits(forms: &[Form], span: Span, problems: &mut Problems) -> Bounds {
     let [lower, upper] = options(forms, ["lower-bound", "upper-bound"], CONSTRAINT, problems);
-    let lower = lower.map(|form| amount(form, "the lower bound", problems));
-    let upper = upper.map(|form| amount(form, "the upper bound", problems));
+    let [low, high] = Limits::Duration.words();
+    let lower = lower.map(|form| amount(form, low, problems));
+    let upper = upper.map(|form| amount(form, high, problems));
     Bounds { lower, upper, span }
 }
 
@@ -187,8 +188,9 @@ fn delay(form: &Form, operator: &Form, rest: &[Form], problems: &mut Problems) -
             return None;
         }
     };
-    let lower = amount(lower, "the shortest wait", problems);
-    let upper = amount(upper, "the longest wait", problems);
+    let [low, high] = Limits::Wait.words();
+    let lower = amount(lower, low, problems);
+    let upper = amount(upper, high, problems);
     let bounds = Bounds { lower: Some(lower), upper: Some(upper), span: form.span };
     Some(Body::Delay(Wait { bounds, span: form.span }))
 }

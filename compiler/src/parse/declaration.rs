@@ -4,7 +4,7 @@ use super::amount::amount;
 use super::condition::condition;
 use super::options::{flag, pairs};
 use super::slips::{self, expected, twice};
-use crate::ast::{Bounds, ControlProgram, DurationOf};
+use crate::ast::{Bounds, ControlProgram, DurationOf, Limits};
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::form::Form;
@@ -29,7 +29,12 @@ pub(super) fn declare(declarations: &[Form], program: &mut ControlProgram, probl
                 }
             }
             Some(("duration", inside)) => match &program.duration {
-                Some(first) => problems.push(twice("the duration", first.span, item.span)),
+                Some(first) => {
+                    let problem = twice("the duration", first.span, item.span);
+                    problems.push(
+                        problem.take_out("the first one", first.span).take_out("the second one", item.span),
+                    );
+                }
                 None => {
                     program.duration = duration(item, inside, problems);
                     program.damaged |= program.duration.is_none();
@@ -78,15 +83,17 @@ pub(super) struct Written<'a> {
 impl Written<'_> {
     pub(super) fn duration(&self, form: &Form, simple: &Form, problems: &mut Problems) -> DurationOf {
         let [lower, upper, min, max] = self.bounds;
+        let [shortest, longest] = Limits::Duration.words();
+        let [soonest, latest] = Limits::ObservationDelay.words();
         let given = |form: Option<&Form>| form.is_some_and(|form| !form.is_error());
         let delay = (given(min) || given(max)).then(|| Bounds {
-            lower: min.map(|form| amount(form, "the shortest observation delay", problems)),
-            upper: max.map(|form| amount(form, "the longest observation delay", problems)),
+            lower: min.map(|form| amount(form, soonest, problems)),
+            upper: max.map(|form| amount(form, latest, problems)),
             span: min.or(max).map_or(simple.span, |form| form.span),
         });
         let bounds = Bounds {
-            lower: lower.map(|form| amount(form, "the lower bound", problems)),
-            upper: upper.map(|form| amount(form, "the upper bound", problems)),
+            lower: lower.map(|form| amount(form, shortest, problems)),
+            upper: upper.map(|form| amount(form, longest, problems)),
             span: simple.span,
         };
         let contingent_nil = self.contingent.filter(|form| form.word() == Some("nil")).map(|nil| nil.span);

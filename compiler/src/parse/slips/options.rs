@@ -52,7 +52,13 @@ pub(in crate::parse) fn guessed<'a, const N: usize>(
             continue;
         };
         if let Some(first) = firsts[slot] {
-            problems.push(twice(&format!("`:{word}`"), first, form.span));
+            let mut problem = twice(&format!("`:{word}`"), first, form.span);
+            if let (Some(one), Some(other)) = (values[slot].filter(|one| !one.is_error()), value) {
+                let pair = |keyword: Span, value: &Form| Span { end: value.span.end, ..keyword };
+                problem = problem.take_out("the first one", pair(first, one));
+                problem = problem.take_out("the second one", pair(form.span, other));
+            }
+            problems.push(problem);
             continue;
         }
         firsts[slot] = Some(form.span);

@@ -121,11 +121,13 @@ impl Analyser<'_> {
         let definition = self.definition;
         let name = clip(&definition.name.name);
         match &definition.duration {
-            Some(duration) if has_body => self.problems.push(
-                Diagnostic::error(Code::DurationOfBody, duration.span, format!("`{name}` has a body and a duration"))
+            Some(duration) if has_body => {
+                let message = format!("`{name}` has a body and a duration");
+                let problem = Diagnostic::error(Code::DurationOfBody, duration.span, message)
                     .primary("only a primitive program has a duration of its own")
-                    .help("To limit how long the body takes, put `(with-temporal-constraint (simple-temporal ...) ...)` around it."),
-            ),
+                    .help("To limit how long the body takes, put `(with-temporal-constraint (simple-temporal ...) ...)` around it.");
+                self.problems.push(around_the_body(problem, duration, &definition.body));
+            }
             Some(_) if definition.damaged => {}
             Some(duration) => self.problems.push(
                 Diagnostic::error(Code::NoBody, definition.name.span, format!("`{name}` is neither primitive nor has it a body"))
@@ -156,6 +158,27 @@ impl Analyser<'_> {
             problems: self.problems,
         }
     }
+}
+
+/// With the suggestion to limit the one form of a body as its program was to be, unless Nature was to decide.
+fn around_the_body(problem: Diagnostic, duration: &ast::DurationOf, body: &[ast::Body]) -> Diagnostic {
+    let (Some(form), true) = (body.first(), body.len() == 1) else { return problem };
+    if duration.contingent || duration.delay.is_some() {
+        return problem;
+    }
+    let start = Span { end: form.span().start, ..form.span() };
+    let mut edits = vec![
+        Edit::replace(duration.span, ""),
+        Edit::before(start, "(with-temporal-constraint (simple-temporal"),
+    ];
+    let ast::Bounds { lower, upper, .. } = &duration.bounds;
+    for (word, amount) in [("lower", lower), ("upper", upper)] {
+        if let Some(amount) = amount {
+            edits.extend([Edit::before(start, format!(" :{word}-bound ")), Edit::copy(start, amount.span)]);
+        }
+    }
+    edits.extend([Edit::before(start, ") "), Edit::after(form.span(), ")")]);
+    problem.suggest("Limit the body instead", edits)
 }
 
 /// The parenthesis at the end of a form.

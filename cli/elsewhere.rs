@@ -15,15 +15,17 @@ pub(crate) fn point_out(inputs: &mut [Input], selection: &Selection) {
     let mut homes: BTreeMap<String, (usize, String)> = BTreeMap::new();
     for (index, input) in inputs.iter().enumerate() {
         let programs = input.compilation().into_iter().flat_map(|compilation| &compilation.ast.programs);
-        let file = input.sources.first().map_or("", |source| source.name.as_str());
         for program in programs {
+            let source = input.sources.get(program.name.span.source as usize);
+            let file = source.map_or("", |source| source.name.as_str());
             homes.entry(program.name.name.clone()).or_insert((index, file.to_string()));
         }
     }
     for (index, input) in inputs.iter_mut().enumerate() {
         let lacking = |diagnostic: &Diagnostic| match diagnostic.code {
             Code::UnknownProgram => {
-                let word = input.sources.first().map(|source| source.slice(diagnostic.span));
+                let source = input.sources.get(diagnostic.span.source as usize);
+                let word = source.map(|source| source.slice(diagnostic.span));
                 word.and_then(|word| word.rsplit(':').next()).map(str::to_lowercase)
             }
             Code::NoEntry => Some(selection.entry().to_lowercase()),

@@ -4,7 +4,9 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use kirk_compiler::{Code, Compilation, Diagnostic, Options, Origins, Source, Span, compile};
+use kirk_compiler::{
+    Code, Companion, Compilation, Diagnostic, Options, Origins, Source, Span, companions, compile,
+};
 use kirk_network::json::ReadProblem;
 use kirk_network::{Network, SourceMap, graphml, json, kinds, plain};
 
@@ -33,7 +35,7 @@ enum Content {
 }
 
 /// RMPL of more bytes than this is no program a person wrote.
-const LARGEST_PROGRAM: u64 = 16 << 20;
+pub(crate) const LARGEST_PROGRAM: u64 = 16 << 20;
 /// Networks are written by machines.
 const LARGEST_NETWORK: u64 = 64 << 20;
 
@@ -56,8 +58,46 @@ pub(crate) fn load(file: &str, selection: &Selection) -> Input {
             input.refuse(selection);
             input
         }
-        Kind::Rmpl => program(vec![Source::new(shown(file), text)], selection),
+        Kind::Rmpl => match with_companions(file, text) {
+            Ok(sources) => program(sources, selection),
+            Err((source, unreadable)) => Input {
+                sources: vec![source],
+                diagnostics: unreadable,
+                content: Content::Unread,
+                network: None,
+            },
+        },
     }
+}
+
+/// The sources of the program that a file is part of: those it names (`;;; kirk: files ...`), or itself alone.
+fn with_companions(file: &str, own: String) -> Result<Vec<Source>, (Source, Vec<Diagnostic>)> {
+    let (mut sources, mut problems, mut is_there) = (Vec::new(), Vec::new(), false);
+    let folder = Path::new(file).parent().filter(|_| file != "-").unwrap_or(Path::new(""));
+    for Companion { name, span } in companions(&own) {
+        let path = folder.join(&name).to_string_lossy().into_owned();
+        if !is_there && is_same_file(&path, file) {
+            is_there = true;
+            sources.push(Source::new(shown(file), own.as_str()));
+            continue;
+        }
+        match text(&path) {
+            Ok(text) => sources.push(Source::new(path.as_str(), text)),
+            Err(unreadable) => problems.push(Diagnostic { span, ..unreadable.diagnostic }),
+        }
+    }
+    if !problems.is_empty() {
+        return Err((Source::new(shown(file), own), problems));
+    }
+    if !is_there {
+        sources.push(Source::new(shown(file), own));
+    }
+    Ok(sources)
+}
+
+fn is_same_file(one: &str, other: &str) -> bool {
+    let real = |path: &str| std::fs::canonicalize(path).ok();
+    real(one).is_some_and(|path| Some(path) == real(other))
 }
 
 /// Reads several files and compiles them as one program.

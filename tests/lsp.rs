@@ -27,6 +27,12 @@ impl Editor {
             .unwrap();
         let input = kirk.stdin.take();
         let output = BufReader::new(kirk.stdout.take().unwrap());
+        // What is waited for in vain ends the test, and not the patience of whoever runs it.
+        let pid = kirk.id().to_string();
+        std::thread::spawn(move || {
+            std::thread::sleep(Duration::from_secs(100));
+            let _ = Command::new("kill").arg(pid).status();
+        });
         Editor { kirk, input, output, asked: 0, told: Vec::new() }
     }
 
@@ -288,4 +294,76 @@ fn without_taking_leave_the_exit_status_is_1() {
     let mut editor = Editor::open(MISSION);
     editor.ask("shutdown", Value::Null).unwrap();
     assert_eq!(editor.leave(), Some(0), "to close the stream is to leave as well");
+}
+
+/// What is said of a document, as soon as it is what is waited for.
+fn wait_for(editor: &mut Editor, uri: &str, wanted: impl Fn(&[&str]) -> bool) -> Vec<Value> {
+    loop {
+        let message =
+            if editor.told.is_empty() { editor.hear().expect("diagnostics") } else { editor.told.remove(0) };
+        if message["method"] == "textDocument/publishDiagnostics" && message["params"]["uri"] == uri {
+            let diagnostics = message["params"]["diagnostics"].as_array().unwrap();
+            if wanted(&codes(diagnostics)) {
+                return diagnostics.clone();
+            }
+        }
+    }
+}
+
+#[test]
+fn the_files_that_a_mission_names_are_one_program_with_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path().canonicalize().unwrap();
+    let library = "(define-control-program drive ()\n  (declare (primitive) (duration (simple :lower-bound 5 :upper-bound 8))))\n";
+    let mission = ";;; kirk: files lib.rmpl mission.rmpl\n(define-control-program main ()\n  \
+                   (with-temporal-constraint (simple-temporal :upper-bound 7)\n    (drive)))\n";
+    std::fs::write(folder.join("lib.rmpl"), library).unwrap();
+    std::fs::write(folder.join("mission.rmpl"), mission).unwrap();
+    let uri = |name: &str| format!("file://{}/{name}", folder.display());
+    let (lib, main) = (uri("lib.rmpl"), uri("mission.rmpl"));
+    let mut editor = Editor::start();
+    editor.ask("initialize", json!({"capabilities": {}})).unwrap();
+    editor.tell("initialized", json!({}));
+    let opened = |uri: &str, text: &str| json!({"textDocument": {"uri": uri, "languageId": "rmpl", "version": 1, "text": text}});
+    editor.tell("textDocument/didOpen", opened(&main, mission));
+    wait_for(&mut editor, &main, |codes| codes.is_empty());
+
+    // Names lead from file to file.
+    let call = json!({"textDocument": {"uri": main}, "position": {"line": 3, "character": 6}});
+    let found = editor.ask("textDocument/definition", call.clone()).unwrap();
+    assert_eq!(
+        (&found[0]["uri"], &found[0]["range"]["start"]),
+        (&json!(lib), &json!({"line": 0, "character": 24}))
+    );
+    let mut rename = call.clone();
+    rename["newName"] = json!("go");
+    let changes = editor.ask("textDocument/rename", rename).unwrap()["changes"].take();
+    assert_eq!((&changes[&lib][0]["newText"], &changes[&main][0]["newText"]), (&json!("go"), &json!("go")));
+    let mut taken = call;
+    taken["newName"] = json!("main");
+    let refused = editor.ask("textDocument/rename", taken).unwrap_err();
+    assert!(refused["message"].as_str().unwrap().contains("The name `main` is taken"), "{refused}");
+
+    // What is being typed in one file counts for the other, and what is not saved is forgotten when it is closed.
+    editor.tell(
+        "textDocument/didOpen",
+        opened(&lib, &library.replace(":lower-bound 5 :upper-bound 8", ":lower-bound 50")),
+    );
+    let told = wait_for(&mut editor, &main, |codes| codes == ["K0601"]);
+    let related = told[0]["relatedInformation"].as_array().unwrap();
+    assert!(related.iter().any(|place| place["location"]["uri"] == json!(lib)), "{told:?}");
+    editor.tell("textDocument/didClose", json!({"textDocument": {"uri": lib}}));
+    wait_for(&mut editor, &main, |codes| codes.is_empty());
+
+    // So does what changes on the disk.
+    std::fs::write(folder.join("lib.rmpl"), "").unwrap();
+    editor.tell("workspace/didChangeWatchedFiles", json!({"changes": [{"uri": lib, "type": 2}]}));
+    let told = wait_for(&mut editor, &main, |codes| codes == ["K0109"]);
+    assert_eq!(told[0]["range"]["start"], json!({"line": 0, "character": 16}), "where it is named");
+    std::fs::remove_file(folder.join("lib.rmpl")).unwrap();
+    editor.tell("workspace/didChangeWatchedFiles", json!({"changes": [{"uri": lib, "type": 3}]}));
+    wait_for(&mut editor, &main, |codes| codes.contains(&"K0701"));
+    editor.ask("shutdown", Value::Null).unwrap();
+    editor.tell("exit", Value::Null);
+    assert_eq!(editor.leave(), Some(0));
 }

@@ -151,3 +151,18 @@ fn the_short_form_has_a_line_for_every_place_with_the_guilty_bounds() {
     assert_eq!(places, ["m.rmpl:3:25", "m.rmpl:4:59", "m.rmpl:2:70"], "{out}");
     assert!(out.lines().all(|line| line.contains(": error[K0601]: ") || line.contains(": note: ")), "{out}");
 }
+
+#[test]
+fn a_file_that_names_others_is_one_program_with_them() {
+    let library =
+        "(define-control-program drive () (declare (primitive) (duration (simple :upper-bound 5))))";
+    let mission = ";;; kirk: files a.rmpl b.rmpl\n(define-control-program main () (drive))";
+    let files = [("a.rmpl", library), ("b.rmpl", mission)];
+    for command in [&["check", "b.rmpl"][..], &["run", "b.rmpl", "--simulate"], &["compile", "b.rmpl"]] {
+        let (status, out, messages) = run(&files, command);
+        assert_eq!((status, messages.as_str()), (Some(0), ""), "{command:?}: {out}");
+    }
+    let (status, _, messages) = run(&files[1..], &["check", "b.rmpl"]);
+    assert_eq!(status, Some(2));
+    assert!(messages.contains("b.rmpl:1:17") && messages.contains("there is no such file"), "{messages}");
+}

@@ -25,13 +25,21 @@ pub struct Front {
 
 /// Reads, parses and analyses the sources as one program.
 pub fn front(sources: &[Source], options: &Options) -> Front {
+    let order: Vec<usize> = (0..sources.len()).collect();
+    front_in_order(sources, &order, options)
+}
+
+/// The same for sources that are numbered otherwise than they follow one another: what one defines is known in the later ones.
+/// Those that are not in the order are not read.
+pub fn front_in_order(sources: &[Source], order: &[usize], options: &Options) -> Front {
     let mut problems = Problems::default();
     let mut program = Program::default();
-    let mut all = Vec::with_capacity(sources.len());
-    for (index, source) in sources.iter().enumerate() {
+    let mut all = vec![Vec::new(); sources.len()];
+    for &index in order {
+        let Some(source) = sources.get(index) else { continue };
         let forms = read(source, index as u32, &mut problems);
         parse(&forms, &mut program, &mut problems);
-        all.push(forms);
+        all[index] = forms;
     }
     let model = analyse(&program, options, &mut problems);
     Front { forms: all, program, model, problems }

@@ -4,9 +4,8 @@ use kirk_compiler::form::Form;
 use kirk_compiler::{Code, Diagnostic, Edit, OriginKind, Span};
 use kirk_network::{Conflict, Duration, Network, Part};
 
-use crate::analysis::{Analysis, analyse};
+use crate::analysis::Analysis;
 use crate::mission::{Judgement, Mission, judge};
-use crate::rename::edited;
 use crate::view::View;
 
 /// An edit that puts a problem right.
@@ -50,7 +49,7 @@ type Fix = (String, Vec<(Span, String)>);
 
 /// What the message itself suggests, as edits of the text.
 fn suggested<'a>(analysis: &'a Analysis, diagnostic: &'a Diagnostic) -> impl Iterator<Item = Fix> + 'a {
-    let sources = std::slice::from_ref(&analysis.source);
+    let sources = &analysis.sources;
     let end_of_line = if analysis.text().contains("\r\n") { "\r\n" } else { "\n" };
     diagnostic.suggestions.iter().map(move |suggestion| {
         let edits = suggestion.edits.iter();
@@ -136,7 +135,7 @@ fn missing_at(mission: &Mission, conflict: &Conflict, part: Part, place: Span) -
 
 /// The mission after an edit.
 fn tried(analysis: &Analysis, mission: &Mission, (_, edits): &Fix) -> Option<Mission> {
-    let (_, unjudged) = analyse(edited(analysis.text(), edits));
+    let (_, unjudged) = analysis.after(edits);
     let (after, _) = judge(unjudged);
     after.into_iter().find(|after| after.program == mission.program)
 }
@@ -151,7 +150,7 @@ fn is_bound(mission: &Mission, requirement: usize) -> bool {
 
 /// A bound that asks for so much less.
 fn relax(analysis: &Analysis, place: Span, network: &Network, part: Part, by: Duration) -> Option<Fix> {
-    let written = analysis.source.slice(place);
+    let written = analysis.slice(place);
     if written.is_empty() || written.starts_with("(simple") {
         return None;
     }
@@ -176,7 +175,7 @@ fn meets_nature(network: &Network, requirement: usize) -> bool {
 
 /// Slack for the form whose first word is at a place.
 fn add_slack(analysis: &Analysis, operator: Span) -> Option<Fix> {
-    let form = innermost(analysis, operator.start)?;
+    let form = innermost(analysis, operator.start).filter(|_| analysis.is_here(operator))?;
     let items = form.list()?;
     let head = items.first()?;
     let word = head.word().filter(|word| matches!(*word, "sequence" | "parallel"))?;

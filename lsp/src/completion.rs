@@ -244,7 +244,7 @@ impl Offer<'_> {
                 .chain(definition.parameters.iter().map(|parameter| &parameter.name))
                 .map(String::as_str)
                 .collect();
-            let about = program(&analysis.source, definition);
+            let about = program(analysis.source_of(definition.span), definition);
             self.form(name, CompletionKind::Program, &format!("({})", words.join(" ")), &about, &snippet);
         }
     }
@@ -317,8 +317,7 @@ impl Offer<'_> {
                     self.plain(&symbol.name, CompletionKind::Variable, "a variable");
                 }
                 SymbolKind::NamedNumber(index) => {
-                    let value =
-                        analysis.source.slice(analysis.program.parameters[index].value.span).to_string();
+                    let value = analysis.slice(analysis.program.parameters[index].value.span).to_string();
                     self.push(
                         &symbol.name,
                         CompletionKind::Number,

@@ -27,24 +27,35 @@ impl Converter<'_> {
         self.analysis.lines.position(self.analysis.text(), offset, self.encoding)
     }
 
+    /// The range of a place in the file it is in.
     pub(crate) fn range(&self, span: Span) -> Range {
-        Range { start: self.position(span.start), end: self.position(span.end) }
+        let (lines, text) = (self.analysis.lines_of(span), &self.analysis.source_of(span).text);
+        let position = |offset| lines.position(text, offset, self.encoding);
+        Range { start: position(span.start), end: position(span.end) }
+    }
+
+    /// The address of the file a place is in.
+    fn address(&self, span: Span) -> Uri {
+        let other = || self.analysis.source_of(span).name.parse().ok();
+        if self.analysis.is_here(span) { None } else { other() }.unwrap_or_else(|| self.uri.clone())
     }
 
     pub(crate) fn location(&self, span: Span) -> Location {
-        Location { uri: self.uri.clone(), range: self.range(span) }
+        Location { uri: self.address(span), range: self.range(span) }
     }
 
     pub(crate) fn edit(&self, (span, new_text): (Span, String)) -> TextEdit {
         TextEdit { range: self.range(span), new_text }
     }
 
-    /// Edits of this document.
+    /// Edits of this document and of those that are one program with it.
     pub(crate) fn workspace_edit(&self, edits: Vec<(Span, String)>) -> WorkspaceEdit {
-        let edits = edits.into_iter().map(|edit| self.edit(edit)).collect();
         // Addresses hold no state that would change where they are.
         #[allow(clippy::mutable_key_type)]
-        let changes = HashMap::from([(self.uri.clone(), edits)]);
+        let mut changes: HashMap<Uri, Vec<TextEdit>> = HashMap::new();
+        for edit in edits {
+            changes.entry(self.address(edit.0)).or_default().push(self.edit(edit));
+        }
         WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() }
     }
 
@@ -122,7 +133,7 @@ impl Converter<'_> {
             tokens.push(SemanticToken {
                 delta_line: line,
                 delta_start: if line == 0 { start.character - last.character } else { start.character },
-                length: self.encoding.length(self.analysis.source.slice(highlight.span)),
+                length: self.encoding.length(self.analysis.slice(highlight.span)),
                 token_type: highlight.kind as u32,
                 token_modifiers_bitset: u32::from(highlight.definition),
             });

@@ -27,7 +27,7 @@ pub(crate) fn of(analysis: &Analysis, symbol: &Symbol, wanted: impl Fn(bool) -> 
 
 /// A name without what stands before it: a package, `#:`, a quotation mark.
 pub(crate) fn bare(analysis: &Analysis, span: Span) -> Span {
-    let text = analysis.source.slice(span);
+    let text = analysis.slice(span);
     let (inner, end) = match text.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')) {
         Some(inner) => (inner, span.end - 1),
         None => (text, span.end),

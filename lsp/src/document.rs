@@ -5,7 +5,7 @@ use std::sync::Arc;
 use kirk_compiler::Diagnostic;
 use lsp_types::{TextDocumentContentChangeEvent, Uri};
 
-use crate::analysis::{Analysis, Unjudged, analyse};
+use crate::analysis::{Analysis, Companions, Unjudged, analyse_among};
 use crate::lines::{Encoding, Lines};
 use crate::mission::Mission;
 use crate::view::{Shift, View};
@@ -16,11 +16,15 @@ pub(crate) struct Document {
     pub(crate) uri: Uri,
     pub(crate) version: i32,
     text: String,
+    /// The files that are one program with it, and what there is to say about their names.
+    companions: (Companions, Vec<Diagnostic>),
+    /// Counts the changes of all of that.
+    revision: u64,
     analysis: Option<Arc<Analysis>>,
     /// What is left to be judged of the analysis.
     unjudged: Option<Unjudged>,
-    /// The last text that was judged, and what there is to say about it.
-    told: Option<(String, Vec<Diagnostic>)>,
+    /// The last revision that was judged, and what there is to say about it.
+    told: Option<(u64, Vec<Diagnostic>)>,
     /// The last text in which there were missions, and these.
     known: Option<(String, Arc<Vec<Mission>>)>,
     /// True if the newest text has been handed on, to be judged or to the client.
@@ -35,6 +39,8 @@ impl Document {
             uri,
             version,
             text,
+            companions: Default::default(),
+            revision: 0,
             analysis: None,
             unjudged: None,
             told: None,
@@ -63,10 +69,33 @@ impl Document {
             }
         }
         self.version = version;
+        self.renew();
+    }
+
+    /// Takes the files that are one program with it; true if they are other than before.
+    pub(crate) fn accompany(&mut self, companions: (Companions, Vec<Diagnostic>)) -> bool {
+        let new = self.companions != companions;
+        if new {
+            self.companions = companions;
+            self.renew();
+        }
+        new
+    }
+
+    fn renew(&mut self) {
+        self.revision += 1;
         self.analysis = None;
         self.unjudged = None;
         self.handed_on = false;
         self.settled = false;
+    }
+
+    pub(crate) fn text(&self) -> &str {
+        &self.text
+    }
+
+    pub(crate) fn revision(&self) -> u64 {
+        self.revision
     }
 
     /// The analysis of the newest text.
@@ -74,7 +103,7 @@ impl Document {
         if let Some(analysis) = &self.analysis {
             return analysis.clone();
         }
-        let (analysis, unjudged) = analyse(self.text.clone());
+        let (analysis, unjudged) = analyse_among(self.text.clone(), &self.companions.0);
         let analysis = Arc::new(analysis);
         self.analysis = Some(analysis.clone());
         self.unjudged = Some(unjudged);
@@ -87,26 +116,27 @@ impl Document {
         self.unjudged.take().filter(|unjudged| !unjudged.roots.is_empty())
     }
 
-    /// Keeps what came of judging a text; false if there is a newer one.
+    /// Keeps what came of judging a revision and its text; false if there is a newer one.
     pub(crate) fn keep(
         &mut self,
-        text: String,
+        (revision, text): (u64, String),
         missions: Vec<Mission>,
         diagnostics: Vec<Diagnostic>,
     ) -> bool {
-        let is_newest = text == self.text;
         if !missions.is_empty() {
-            self.known = Some((text.clone(), Arc::new(missions)));
+            self.known = Some((text, Arc::new(missions)));
         }
-        self.told = Some((text, diagnostics));
-        is_newest
+        self.told = Some((revision, diagnostics));
+        revision == self.revision
     }
 
     /// What there is to say about the newest text as far as it is known, sorted by place.
     pub(crate) fn diagnostics(&mut self) -> Vec<Diagnostic> {
         let mut all = self.analysis().diagnostics.clone();
-        if let Some((_, more)) = self.told.as_ref().filter(|(text, _)| *text == self.text) {
-            all.extend(more.iter().cloned());
+        all.extend(self.companions.1.iter().cloned());
+        if let Some((_, more)) = self.told.as_ref().filter(|(revision, _)| *revision == self.revision) {
+            // What is to be said at places of other files is said there, if they name this one.
+            all.extend(more.iter().filter(|d| d.span.source == 0).cloned());
             all.sort_by_key(|d| (d.span, d.severity, d.code));
         }
         all

@@ -59,7 +59,7 @@ pub fn highlight(analysis: &Analysis) -> Vec<Highlight> {
     for comment in comments(text, &tokens) {
         plain(comment, HighlightKind::Comment);
     }
-    let mut names = analysis.symbols.places().peekable();
+    let mut names = analysis.symbols.places().filter(|(place, _)| analysis.is_here(place.span)).peekable();
     let mut after_open = false;
     for token in &tokens {
         let span = Span::new(0, token.start, token.end);

@@ -23,8 +23,8 @@ pub struct Hint {
 /// The earliest start and the latest end of everything that is called between two offsets.
 pub fn hints(view: &View, within: Span) -> Vec<Hint> {
     let mut found = Vec::new();
-    let mut open: Vec<&Body> =
-        view.analysis.program.programs.iter().flat_map(|program| &program.body).rev().collect();
+    let programs = view.analysis.program.programs.iter().filter(|it| view.analysis.is_here(it.span));
+    let mut open: Vec<&Body> = programs.flat_map(|program| &program.body).rev().collect();
     while let Some(body) = open.pop() {
         let span = body.span();
         if span.end < within.start || within.end < span.start {
@@ -78,7 +78,7 @@ pub struct Lens {
 /// The verdict on each program a mission may start from.
 pub fn lenses(view: &View) -> Vec<Lens> {
     let mut found = Vec::new();
-    for program in &view.analysis.program.programs {
+    for program in view.analysis.program.programs.iter().filter(|it| view.analysis.is_here(it.span)) {
         let span = program.name.span;
         let started = view.occurrences(span).into_iter().find(|(mission, it)| {
             it.kind == Kind::Program && mission.occurrences.first().is_some_and(|root| root.start == it.start)

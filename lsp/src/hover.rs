@@ -46,7 +46,7 @@ pub fn hover(view: &View, offset: u32) -> Option<Hover> {
 fn word_at(view: &View, offset: u32) -> Option<Hover> {
     let analysis = &*view.analysis;
     let cursor = pointed_at(analysis.text(), offset)?;
-    let written = analysis.source.slice(cursor.word);
+    let written = analysis.slice(cursor.word);
     let Some(word) = word(written).filter(|_| cursor.first) else {
         let name = written.strip_prefix(':')?.to_lowercase();
         let (_, about) = keywords(&cursor.keyword_of()).iter().find(|(known, _)| *known == name)?;
@@ -65,14 +65,18 @@ fn word_at(view: &View, offset: u32) -> Option<Hover> {
 fn what(analysis: &Analysis, symbol: &Symbol) -> String {
     let name = &symbol.name;
     match symbol.kind {
-        SymbolKind::Program(index) => program(&analysis.source, &analysis.program.programs[index]),
+        SymbolKind::Program(index) => {
+            let definition = &analysis.program.programs[index];
+            program(analysis.source_of(definition.span), definition)
+        }
         SymbolKind::Parameter(index) => {
             format!("`{name}`: a parameter of `{}`", analysis.program.programs[index].name.name)
         }
         SymbolKind::Variable => format!("`{name}`: a variable"),
         SymbolKind::Label => format!("`{name}`: a label, which names an occurrence"),
         SymbolKind::NamedNumber(index) => {
-            format!("`{name}` = {}", amount(&analysis.source, &analysis.program.parameters[index].value))
+            let value = &analysis.program.parameters[index].value;
+            format!("`{name}` = {}", amount(analysis.source_of(value.span), value))
         }
         SymbolKind::Class(_) => format!("`{name}`: a class"),
         SymbolKind::Slot(class) => {

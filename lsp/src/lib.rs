@@ -13,10 +13,12 @@
 //!
 //! # Deliberately absent
 //!
-//! Files: a document is judged by itself, as in `kirk check`.
+//! Access to files: what is not open in the editor is read by who starts the server. A document is judged by itself, or with
+//! the files it names (`;;; kirk: files ...`).
 
 mod actions;
 mod analysis;
+mod companions;
 mod completion;
 mod convert;
 mod cursor;
@@ -41,7 +43,8 @@ mod vocabulary;
 mod waits;
 
 pub use actions::{Action, actions};
-pub use analysis::{Analysis, Unjudged, analyse};
+pub use analysis::{Analysis, Companions, Unjudged, analyse, analyse_among};
+pub use companions::ReadFile;
 pub use completion::{Completion, CompletionKind, completion, filled_in};
 pub use definition::{definition, references};
 pub use folding::{Fold, folding};

@@ -50,12 +50,19 @@ pub fn outline(analysis: &Analysis) -> Vec<Outline> {
         children: Vec::new(),
     };
     let mut found = Vec::new();
-    found.extend(program.packages.iter().map(|it| entry(&it.name, OutlineKind::Package, String::new())));
-    for number in &program.parameters {
-        let value = analysis.source.slice(number.value.span).to_string();
+    let here = |name: &kirk_compiler::ast::Ident| analysis.is_here(name.span);
+    found.extend(
+        program
+            .packages
+            .iter()
+            .filter(|it| here(&it.name))
+            .map(|it| entry(&it.name, OutlineKind::Package, String::new())),
+    );
+    for number in program.parameters.iter().filter(|it| here(&it.name)) {
+        let value = analysis.slice(number.value.span).to_string();
         found.push(entry(&number.name, OutlineKind::Number, value));
     }
-    for class in &program.classes {
+    for class in program.classes.iter().filter(|it| here(&it.name)) {
         let mut outline = entry(&class.name, OutlineKind::Class, String::new());
         outline.children = class
             .slots
@@ -67,7 +74,7 @@ pub fn outline(analysis: &Analysis) -> Vec<Outline> {
             .collect();
         found.push(outline);
     }
-    for program in &program.programs {
+    for program in program.programs.iter().filter(|it| here(&it.name)) {
         let kind = if program.primitive { OutlineKind::Primitive } else { OutlineKind::Program };
         let parameters: Vec<&str> = program.parameters.iter().map(|it| it.name.as_str()).collect();
         found.push(entry(&program.name, kind, parameters.join(" ")));

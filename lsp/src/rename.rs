@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use kirk_compiler::read::{Kind, tokens};
-use kirk_compiler::{Place, Span, Symbol, SymbolKind, Symbols};
+use kirk_compiler::{Place, Severity, Span, Symbol, SymbolKind, Symbols};
 
-use crate::analysis::{Analysis, analyse};
+use crate::analysis::Analysis;
 use crate::cursor::pointed_at;
 use crate::definition::bare;
 use crate::vocabulary::word;
@@ -13,8 +13,7 @@ use crate::vocabulary::word;
 /// The name at an offset that can be changed.
 pub fn prepare_rename(analysis: &Analysis, offset: u32) -> Result<Span, String> {
     let Some((symbol, place)) = analysis.symbols.at(0, offset) else {
-        let written =
-            pointed_at(analysis.text(), offset).map_or("", |cursor| analysis.source.slice(cursor.word));
+        let written = pointed_at(analysis.text(), offset).map_or("", |cursor| analysis.slice(cursor.word));
         let is_number = matches!(tokens(written).as_slice(), [one] if one.kind == Kind::Number);
         return Err(match written {
             "" => "There is no name here.".to_string(),
@@ -46,11 +45,21 @@ pub fn rename(analysis: &Analysis, offset: u32, new: &str) -> Result<Vec<(Span, 
     }
     let edits: Vec<(Span, String)> =
         symbol.places.iter().map(|place| (bare(analysis, place.span), new.to_string())).collect();
-    let (after, _) = analyse(edited(analysis.text(), &edits));
+    let (after, _) = analysis.after(&edits);
+    let errors = |analysis: &Analysis| {
+        let all = analysis.diagnostics.iter().filter(|d| d.severity == Severity::Error);
+        all.map(|d| (d.message.clone(), d.span)).collect::<Vec<_>>()
+    };
     match difference(&analysis.symbols, &after.symbols) {
+        // Two things of one name that nothing means are told by the compiler alone.
+        None if after.has_errors() && errors(&after).len() > errors(analysis).len() => {
+            let line =
+                errors(&after).last().map_or(0, |(_, span)| after.lines_of(*span).line_of(span.start) + 1);
+            Err(format!("The name `{new}` is taken: in line {line}, it would be defined twice."))
+        }
         None => Ok(edits),
         Some(place) => {
-            let line = after.lines.line_of(place.span.start) + 1;
+            let line = after.lines_of(place.span).line_of(place.span.start) + 1;
             Err(format!("The name `{new}` is taken: in line {line}, it would mean something else than now."))
         }
     }

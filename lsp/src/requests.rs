@@ -1,6 +1,7 @@
 //! Every request of the protocol that is answered: parameters in, a feature asked, its answer converted.
 
 use lsp_server::{ErrorCode, Request, Response};
+use lsp_types::notification::{self, Notification as _};
 use lsp_types::request::{self, Request as _};
 use lsp_types::{
     ClientCapabilities, CodeActionKind, CodeActionOptions, CodeActionOrCommand, CodeActionProviderCapability,
@@ -38,6 +39,7 @@ pub(crate) struct Client {
     refresh_hints: bool,
     refresh_lenses: bool,
     snippets: bool,
+    watches: bool,
 }
 
 impl Client {
@@ -46,12 +48,20 @@ impl Client {
         let hints = workspace.and_then(|it| it.inlay_hint.as_ref()).and_then(|it| it.refresh_support);
         let lenses = workspace.and_then(|it| it.code_lens.as_ref()).and_then(|it| it.refresh_support);
         let items = capabilities.text_document.as_ref().and_then(|it| it.completion.as_ref());
+        let watches =
+            workspace.and_then(|it| it.did_change_watched_files).and_then(|it| it.dynamic_registration);
         let snippets = items.and_then(|it| it.completion_item.as_ref()).and_then(|it| it.snippet_support);
         Client {
             refresh_hints: hints == Some(true),
             refresh_lenses: lenses == Some(true),
             snippets: snippets == Some(true),
+            watches: watches == Some(true),
         }
+    }
+
+    /// True if it says when files change, if it is asked to.
+    pub(crate) fn watches_files(self) -> bool {
+        self.watches
     }
 
     /// What to ask of it when there is a new verdict.
@@ -60,6 +70,16 @@ impl Client {
         let lenses = self.refresh_lenses.then_some(request::CodeLensRefresh::METHOD);
         hints.into_iter().chain(lenses)
     }
+}
+
+/// To ask for a word when a program changes on the disk.
+pub(crate) fn watchers() -> serde_json::Value {
+    let globs = ["**/*.rmpl", "**/*.lisp"].map(|glob| serde_json::json!({ "globPattern": glob }));
+    serde_json::json!({ "registrations": [{
+        "id": "kirk-files",
+        "method": notification::DidChangeWatchedFiles::METHOD,
+        "registerOptions": { "watchers": globs },
+    }] })
 }
 
 /// What the server can do.
@@ -155,6 +175,7 @@ pub(crate) fn answer(server: &mut Server, request: Request) -> Response {
             let at = params.text_document_position_params;
             server.at(&at, |view, offset, to| {
                 let places = references(&view.analysis, offset, true).into_iter();
+                let places = places.filter(|span| view.analysis.is_here(*span));
                 let shown = |span| lsp_types::DocumentHighlight { range: to.range(span), kind: None };
                 Ok(Some(places.map(shown).collect()))
             })

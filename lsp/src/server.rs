@@ -8,6 +8,7 @@
 use std::collections::{BTreeMap, HashSet};
 use std::io::{BufRead, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread;
 use std::time::Duration;
@@ -15,10 +16,12 @@ use std::time::Duration;
 use kirk_compiler::Diagnostic;
 use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response};
 use lsp_types::notification::{self, Notification as _};
+use lsp_types::request::{self, Request as _};
 use lsp_types::{InitializeParams, Uri};
 use serde_json::Value;
 
 use crate::analysis::Unjudged;
+use crate::companions::{ReadFile, gather, path_of};
 use crate::convert::Converter;
 use crate::document::Document;
 use crate::feedback::feedback;
@@ -38,6 +41,7 @@ enum Event {
 /// A text to judge.
 struct Job {
     uri: String,
+    revision: u64,
     text: String,
     unjudged: Unjudged,
 }
@@ -45,6 +49,7 @@ struct Job {
 /// What came of it.
 struct Verdicts {
     uri: String,
+    revision: u64,
     text: String,
     missions: Vec<Mission>,
     diagnostics: Vec<Diagnostic>,
@@ -56,8 +61,13 @@ const STACK: usize = 256 << 20;
 /// How long what is known is held back for a verdict, so that both appear at once.
 const PATIENCE: Duration = Duration::from_millis(150);
 
-/// Serves one client until it leaves; true if it took leave as the protocol wants it.
-pub fn serve(input: impl BufRead + Send + 'static, output: impl Write + Send + 'static) -> bool {
+/// Serves one client until it leaves; true if it took leave as the protocol wants it. What documents name and the client has not
+/// open is read by `files`.
+pub fn serve(
+    input: impl BufRead + Send + 'static,
+    output: impl Write + Send + 'static,
+    files: ReadFile,
+) -> bool {
     let (events, inbox) = channel();
     let (outbox, outgoing) = channel();
     let (jobs, waiting) = channel();
@@ -71,7 +81,7 @@ pub fn serve(input: impl BufRead + Send + 'static, output: impl Write + Send + '
     if judge.is_err() {
         return false;
     }
-    let server = Server::new(outbox, jobs);
+    let server = Server::new(outbox, jobs, files);
     let middle = thread::Builder::new().stack_size(STACK).spawn(move || server.run(&inbox));
     let polite = middle.is_ok_and(|middle| middle.join().unwrap_or(false));
     // The outbox is gone with the server: what is left in it is written, and no more comes.
@@ -86,10 +96,10 @@ fn judge_all(waiting: &Receiver<Job>, events: &Sender<Event>) {
         for job in waiting.try_iter() {
             newest.insert(job.uri.clone(), job);
         }
-        for (uri, Job { text, unjudged, .. }) in newest {
+        for (uri, Job { revision, text, unjudged, .. }) in newest {
             let judged = catch_unwind(AssertUnwindSafe(|| judge(unjudged)));
             let (missions, diagnostics) = judged.unwrap_or_default();
-            let verdicts = Verdicts { uri, text, missions, diagnostics };
+            let verdicts = Verdicts { uri, revision, text, missions, diagnostics };
             if events.send(Event::Judged(verdicts)).is_err() {
                 return;
             }
@@ -115,10 +125,13 @@ pub(crate) struct Server {
     pub(crate) documents: BTreeMap<String, Document>,
     /// Counts the requests to the client.
     asked: i32,
+    files: ReadFile,
+    /// Something has changed that documents may name.
+    stale: bool,
 }
 
 impl Server {
-    fn new(outbox: Sender<Outgoing>, jobs: Sender<Job>) -> Server {
+    fn new(outbox: Sender<Outgoing>, jobs: Sender<Job>, files: ReadFile) -> Server {
         Server {
             outbox,
             jobs,
@@ -127,6 +140,8 @@ impl Server {
             client: requests::Client::default(),
             documents: BTreeMap::new(),
             asked: 0,
+            files,
+            stale: false,
         }
     }
 
@@ -236,6 +251,14 @@ impl Server {
             notification::DidCloseTextDocument::METHOD => {
                 serde_json::from_value(params).map(|it| self.closed(it))
             }
+            notification::DidChangeWatchedFiles::METHOD => {
+                self.stale = true;
+                Ok(())
+            }
+            notification::Initialized::METHOD => {
+                self.watch_files();
+                Ok(())
+            }
             _ => Ok(()),
         };
         if let Err(error) = understood {
@@ -247,12 +270,18 @@ impl Server {
         let item = params.text_document;
         let document = Document::new(item.uri.clone(), item.version, item.text);
         self.documents.insert(key(&item.uri), document);
+        self.accompany(&key(&item.uri));
+        self.stale = true;
     }
 
     fn changed(&mut self, params: lsp_types::DidChangeTextDocumentParams) {
         let (uri, version) = (params.text_document.uri, params.text_document.version);
         match self.documents.get_mut(&key(&uri)) {
-            Some(document) => document.change(version, params.content_changes, self.encoding),
+            Some(document) => {
+                document.change(version, params.content_changes, self.encoding);
+                self.accompany(&key(&uri));
+                self.stale = true;
+            }
             None => self.log(&format!("`{}` was changed and is not open", uri.as_str())),
         }
     }
@@ -260,13 +289,40 @@ impl Server {
     fn closed(&mut self, params: lsp_types::DidCloseTextDocumentParams) {
         let uri = params.text_document.uri;
         if self.documents.remove(&key(&uri)).is_some() {
+            self.stale = true;
             let nothing = lsp_types::PublishDiagnosticsParams { uri, diagnostics: Vec::new(), version: None };
             self.notify::<notification::PublishDiagnostics>(nothing);
         }
     }
 
+    /// Asks the client to say when a file changes that it has not open, if it can.
+    fn watch_files(&mut self) {
+        if self.client.watches_files() {
+            self.asked += 1;
+            let (id, method) = (RequestId::from(self.asked), request::RegisterCapability::METHOD.to_string());
+            send(&self.outbox, Request { id, method, params: requests::watchers() });
+        }
+    }
+
+    /// Gives a document the files it names, as they are open or else as they are on the disk.
+    fn accompany(&mut self, uri: &str) {
+        let Some(document) = self.documents.get(uri) else { return };
+        let open = |path: &Path| {
+            let same = |(uri, _): &(&String, &Document)| path_of(uri).is_some_and(|known| known == path);
+            self.documents.iter().find(same).map(|(_, document)| document.text().to_string())
+        };
+        let companions = gather(uri, document.text(), |path| open(path).or_else(|| (self.files)(path)));
+        if let Some(document) = self.documents.get_mut(uri) {
+            document.accompany(companions);
+        }
+    }
+
     /// Hands on every text that is new: to be judged, or, with errors in it, to the client.
     fn hand_on(&mut self) {
+        if std::mem::take(&mut self.stale) {
+            let all: Vec<String> = self.documents.keys().cloned().collect();
+            all.iter().for_each(|uri| self.accompany(uri));
+        }
         let mut settled = Vec::new();
         for (uri, document) in &mut self.documents {
             if document.handed_on {
@@ -275,8 +331,8 @@ impl Server {
             document.handed_on = true;
             match document.take_unjudged() {
                 Some(unjudged) => {
-                    let text = document.analysis().text().to_string();
-                    let _ = self.jobs.send(Job { uri: uri.clone(), text, unjudged });
+                    let (revision, text) = (document.revision(), document.text().to_string());
+                    let _ = self.jobs.send(Job { uri: uri.clone(), revision, text, unjudged });
                 }
                 None => settled.push(uri.clone()),
             }
@@ -285,10 +341,10 @@ impl Server {
     }
 
     fn judged(&mut self, verdicts: Verdicts) {
-        let Verdicts { uri, text, missions, diagnostics } = verdicts;
+        let Verdicts { uri, revision, text, missions, diagnostics } = verdicts;
         // Closed meanwhile.
         let Some(document) = self.documents.get_mut(&uri) else { return };
-        if document.keep(text, missions, diagnostics) {
+        if document.keep((revision, text), missions, diagnostics) {
             self.publish(&uri);
             for method in self.client.refreshes() {
                 self.asked += 1;
@@ -367,7 +423,7 @@ mod tests {
         assert_eq!(withdrawn, HashSet::from([RequestId::from(7), RequestId::from("seven".to_string())]));
         let (outbox, outgoing) = channel();
         let (jobs, _waiting) = channel();
-        let mut server = Server { state: State::Open, ..Server::new(outbox, jobs) };
+        let mut server = Server { state: State::Open, ..Server::new(outbox, jobs, Box::new(|_| None)) };
         let params = json!({"textDocument": {"uri": "file:///x"}, "position": {"line": 0, "character": 0}});
         server
             .request(Request { id: 7.into(), method: "textDocument/hover".to_string(), params }, &withdrawn);

@@ -32,7 +32,7 @@ pub fn signature(analysis: &Analysis, offset: u32) -> Option<Signature> {
         let part = open.before.saturating_sub(1 + usize::from(level > 0));
         let called = analysis.program.programs.iter().find(|program| program.name.name == head);
         let (label, about) = match (called, word(&head)) {
-            (Some(called), _) => (call(called), program(&analysis.source, called)),
+            (Some(called), _) => (call(called), program(analysis.source_of(called.span), called)),
             (None, Some(word)) => (word.shape.to_string(), word.about.to_string()),
             (None, None) => continue,
         };

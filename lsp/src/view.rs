@@ -60,6 +60,8 @@ impl Shift {
     pub fn back(&self, span: Span) -> Option<Span> {
         match self.changed {
             None => Some(span),
+            // Another file, as it was when it was judged.
+            Some(_) if span.source != 0 => Some(span),
             Some((start, _, _)) if span.end <= start => Some(span),
             Some((_, old, new)) if span.start >= new => {
                 Some(Span { start: span.start - new + old, end: span.end - new + old, ..span })

@@ -31,10 +31,10 @@ pub(crate) fn within_limit(number: i64) -> Result<i64, TooLarge> {
     if number.unsigned_abs() > LIMIT as u64 { Err(TooLarge) } else { Ok(number) }
 }
 
-/// `a + b`, if that is within [`LIMIT`]. Both must be.
+/// `a + b`, if that is within [`LIMIT`].
 #[inline]
 pub(crate) fn add(a: i64, b: i64) -> Result<i64, TooLarge> {
-    within_limit(a + b)
+    within_limit(a.checked_add(b).ok_or(TooLarge)?)
 }
 
 /// An ordinary edge: `to - from <= weight`.

@@ -96,7 +96,10 @@ fn deciding_and_compiling_refuse_the_same_networks_as_too_large() {
 fn bounds(network: &Network) -> impl Iterator<Item = Duration> {
     let required =
         network.requirements().iter().flat_map(|requirement| [requirement.lower, requirement.upper]);
-    let natural = network.contingents().iter().flat_map(|link| [link.upper.into(), link.delay.max]);
+    let natural = network
+        .contingents()
+        .iter()
+        .flat_map(|link| [link.upper.into(), link.delay.min.into(), link.delay.max]);
     required.chain(natural).filter_map(Bound::finite)
 }
 

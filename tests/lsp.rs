@@ -367,3 +367,62 @@ fn the_files_that_a_mission_names_are_one_program_with_it() {
     editor.tell("exit", Value::Null);
     assert_eq!(editor.leave(), Some(0));
 }
+
+#[test]
+fn an_editor_that_asks_for_diagnostics_is_not_told_and_asks_again_when_there_is_a_verdict() {
+    let mut editor = Editor::start();
+    let can = json!({
+        "textDocument": {"diagnostic": {}},
+        "workspace": {"diagnostic": {"refreshSupport": true}},
+    });
+    let about = editor.ask("initialize", json!({"capabilities": can})).unwrap();
+    assert_eq!(about["capabilities"]["diagnosticProvider"]["identifier"], "kirk");
+    editor.tell("initialized", json!({}));
+    let document = json!({"uri": URI, "languageId": "rmpl", "version": 1, "text": MISSION});
+    editor.tell("textDocument/didOpen", json!({"textDocument": document}));
+    loop {
+        let message = editor.hear().unwrap();
+        assert_ne!(message["method"], "textDocument/publishDiagnostics");
+        if message["method"] == "workspace/diagnostic/refresh" {
+            break;
+        }
+    }
+    let report = editor.ask("textDocument/diagnostic", json!({"textDocument": {"uri": URI}})).unwrap();
+    assert_eq!(
+        (&report["kind"], codes(report["items"].as_array().unwrap())),
+        (&json!("full"), vec!["K0601"])
+    );
+}
+
+#[test]
+fn a_part_is_laid_out_symbols_are_found_in_all_documents_and_a_lens_says_its_verdict() {
+    let mut editor = Editor::open(MISSION);
+    assert_eq!(codes(&editor.diagnostics(1)), ["K0601"]);
+    let found = editor.ask("workspace/symbol", json!({"query": "DL"})).unwrap();
+    assert_eq!((&found[0]["name"], &found[0]["location"]["uri"]), (&json!("drill"), &json!(URI)));
+    assert_eq!(found.as_array().unwrap().len(), 1);
+
+    let lenses = editor.ask("textDocument/codeLens", json!({"textDocument": {"uri": URI}})).unwrap();
+    let command = &lenses[0]["command"];
+    let run = json!({"command": command["command"], "arguments": command["arguments"]});
+    let said = editor.ask("workspace/executeCommand", run).unwrap();
+    assert!(said.as_str().unwrap().starts_with("`main` is not controllable: 1 s"), "{said}");
+    assert!(editor.told.iter().any(|message| message["method"] == "window/showMessage"));
+    let unknown = editor.ask("workspace/executeCommand", json!({"command": "kirk.fly", "arguments": []}));
+    assert!(unknown.is_err());
+
+    // Only the form that is touched: the other stays as it was typed.
+    let text =
+        "(define-control-program   a () (declare (primitive)))\n(define-control-program   main () (a))\n";
+    editor.tell(
+        "textDocument/didChange",
+        json!({"textDocument": {"uri": URI, "version": 2}, "contentChanges": [{"text": text}]}),
+    );
+    let range = json!({"start": {"line": 1, "character": 3}, "end": {"line": 1, "character": 3}});
+    let options = json!({"tabSize": 2, "insertSpaces": true});
+    let asked = json!({"textDocument": {"uri": URI}, "range": range, "options": options});
+    let edits = editor.ask("textDocument/rangeFormatting", asked).unwrap();
+    assert_eq!(edits.as_array().unwrap().len(), 1);
+    assert_eq!(edits[0]["range"]["start"], json!({"line": 1, "character": 0}));
+    assert_eq!(edits[0]["newText"], "(define-control-program main ()\n  (a))");
+}

@@ -100,16 +100,22 @@ pub(crate) fn completion_kind(kind: CompletionKind) -> CompletionItemKind {
 }
 
 impl Converter<'_> {
+    /// Something that is defined, for a search over all documents.
+    #[allow(deprecated, reason = "the field has no default")]
+    pub(crate) fn information(&self, outline: Outline) -> lsp_types::SymbolInformation {
+        lsp_types::SymbolInformation {
+            name: outline.name,
+            kind: symbol_kind(outline.kind),
+            tags: None,
+            deprecated: None,
+            location: self.location(outline.selection),
+            container_name: None,
+        }
+    }
+
     #[allow(deprecated, reason = "the field has no default")]
     pub(crate) fn symbol(&self, outline: Outline) -> lsp_types::DocumentSymbol {
-        let kind = match outline.kind {
-            OutlineKind::Primitive => SymbolKind::EVENT,
-            OutlineKind::Program => SymbolKind::FUNCTION,
-            OutlineKind::Number => SymbolKind::CONSTANT,
-            OutlineKind::Class => SymbolKind::CLASS,
-            OutlineKind::Slot => SymbolKind::FIELD,
-            OutlineKind::Package => SymbolKind::NAMESPACE,
-        };
+        let kind = symbol_kind(outline.kind);
         let children: Vec<_> = outline.children.into_iter().map(|child| self.symbol(child)).collect();
         lsp_types::DocumentSymbol {
             name: outline.name,
@@ -140,6 +146,17 @@ impl Converter<'_> {
             last = start;
         }
         tokens
+    }
+}
+
+fn symbol_kind(kind: OutlineKind) -> SymbolKind {
+    match kind {
+        OutlineKind::Primitive => SymbolKind::EVENT,
+        OutlineKind::Program => SymbolKind::FUNCTION,
+        OutlineKind::Number => SymbolKind::CONSTANT,
+        OutlineKind::Class => SymbolKind::CLASS,
+        OutlineKind::Slot => SymbolKind::FIELD,
+        OutlineKind::Package => SymbolKind::NAMESPACE,
     }
 }
 

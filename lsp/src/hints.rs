@@ -70,6 +70,8 @@ fn later(a: Option<Time>, b: Option<Time>) -> Option<Time> {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lens {
     /// The name of the program.
+    pub program: String,
+    /// Where that stands.
     pub span: Span,
     /// What is said above it.
     pub title: String,
@@ -89,7 +91,7 @@ pub fn lenses(view: &View) -> Vec<Lens> {
             (false, true) => format!("before the errors: {}", verdict(mission)),
             (false, false) => format!("before the last change: {}", verdict(mission)),
         };
-        found.push(Lens { span, title });
+        found.push(Lens { program: program.name.name.clone(), span, title });
     }
     found
 }

@@ -25,3 +25,20 @@ pub fn layout(analysis: &Analysis) -> Option<Vec<(Span, String)>> {
     let (start, end) = (length(&old[..before]), text.len() - length(&old[old.len() - behind..]));
     Some(vec![(Span::new(0, start, end), new[before..new.len() - behind].concat())])
 }
+
+/// The edits that lay out the top-level forms which a range touches; what cannot be read stays as it is.
+pub fn layout_within(analysis: &Analysis, within: Span) -> Vec<(Span, String)> {
+    let touched = analysis.forms.iter().map(|form| form.span);
+    let touched =
+        touched.filter(|form| form.start < within.end.max(within.start + 1) && within.start < form.end);
+    let edit = |form: Span| {
+        let before = analysis.slice(form);
+        let plain = before.replace("\r\n", "\n");
+        let mut after = format(&plain).ok()?.trim_end().to_string();
+        if before.contains("\r\n") || analysis.text().contains("\r\n") {
+            after = after.replace('\n', "\r\n");
+        }
+        (after != before).then_some((form, after))
+    };
+    touched.filter_map(edit).collect()
+}

@@ -18,6 +18,7 @@
 
 mod actions;
 mod analysis;
+mod capabilities;
 mod companions;
 mod completion;
 mod convert;
@@ -51,7 +52,7 @@ pub use folding::{Fold, folding};
 pub use highlight::{Highlight, HighlightKind, highlight};
 pub use hints::{Hint, Lens, hints, lenses};
 pub use hover::{Hover, hover};
-pub use layout::layout;
+pub use layout::{layout, layout_within};
 pub use lines::{Encoding, Lines};
 pub use mission::{Judgement, Mission, Occurrence, judge};
 pub use outline::{Outline, OutlineKind, outline};

@@ -38,6 +38,14 @@ pub enum OutlineKind {
     Package,
 }
 
+impl Outline {
+    /// True if what is looked for occurs in its name, letter by letter in this order.
+    pub fn is_like(&self, wanted: &str) -> bool {
+        let mut name = self.name.chars();
+        wanted.to_lowercase().chars().all(|wanted| name.any(|c| c == wanted))
+    }
+}
+
 /// Everything a text defines, in source order.
 pub fn outline(analysis: &Analysis) -> Vec<Outline> {
     let program = &analysis.program;

@@ -1,142 +1,33 @@
 //! Every request of the protocol that is answered: parameters in, a feature asked, its answer converted.
 
 use lsp_server::{ErrorCode, Request, Response};
-use lsp_types::notification::{self, Notification as _};
-use lsp_types::request::{self, Request as _};
+use lsp_types::request;
 use lsp_types::{
-    ClientCapabilities, CodeActionKind, CodeActionOptions, CodeActionOrCommand, CodeActionProviderCapability,
-    CodeLensOptions, Command, CompletionItem, CompletionOptions, CompletionTextEdit, DocumentSymbolResponse,
-    FoldingRangeKind, FoldingRangeProviderCapability, HoverContents, HoverProviderCapability,
-    InitializeResult, InlayHintLabel, InlayHintTooltip, InsertTextFormat, OneOf, ParameterInformation,
-    ParameterLabel, PrepareRenameResponse, RenameOptions, SemanticTokenModifier, SemanticTokensFullOptions,
-    SemanticTokensLegend, SemanticTokensOptions, ServerCapabilities, ServerInfo, SignatureHelpOptions,
-    SignatureInformation, TextDocumentPositionParams, TextDocumentSyncCapability, TextDocumentSyncKind,
-    TextDocumentSyncOptions, Uri,
+    CodeActionKind, CodeActionOrCommand, Command, CompletionItem, CompletionTextEdit,
+    DocumentDiagnosticReport, DocumentSymbolResponse, FoldingRangeKind, FullDocumentDiagnosticReport,
+    HoverContents, InlayHintLabel, InlayHintTooltip, InsertTextFormat, ParameterInformation, ParameterLabel,
+    PrepareRenameResponse, RelatedFullDocumentDiagnosticReport, SignatureInformation,
+    TextDocumentPositionParams, Uri, WorkspaceSymbolResponse,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::actions::actions;
+use crate::capabilities::VERDICT;
 use crate::completion::{Completion, completion, filled_in};
-use crate::convert::{Converter, completion_kind, documentation, legend, markdown};
+use crate::convert::{Converter, completion_kind, documentation, markdown};
 use crate::definition::{definition, references};
 use crate::feedback::shown;
 use crate::folding::folding;
 use crate::highlight::highlight;
 use crate::hints::{hints, lenses};
 use crate::hover::hover;
-use crate::layout::layout;
-use crate::lines::Encoding;
+use crate::layout::{layout, layout_within};
 use crate::outline::outline;
 use crate::rename::{prepare_rename, rename};
 use crate::server::{Server, key};
 use crate::signature::signature;
 use crate::view::View;
-
-/// What the client can do.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Client {
-    refresh_hints: bool,
-    refresh_lenses: bool,
-    snippets: bool,
-    watches: bool,
-}
-
-impl Client {
-    pub(crate) fn new(capabilities: &ClientCapabilities) -> Client {
-        let workspace = capabilities.workspace.as_ref();
-        let hints = workspace.and_then(|it| it.inlay_hint.as_ref()).and_then(|it| it.refresh_support);
-        let lenses = workspace.and_then(|it| it.code_lens.as_ref()).and_then(|it| it.refresh_support);
-        let items = capabilities.text_document.as_ref().and_then(|it| it.completion.as_ref());
-        let watches =
-            workspace.and_then(|it| it.did_change_watched_files).and_then(|it| it.dynamic_registration);
-        let snippets = items.and_then(|it| it.completion_item.as_ref()).and_then(|it| it.snippet_support);
-        Client {
-            refresh_hints: hints == Some(true),
-            refresh_lenses: lenses == Some(true),
-            snippets: snippets == Some(true),
-            watches: watches == Some(true),
-        }
-    }
-
-    /// True if it says when files change, if it is asked to.
-    pub(crate) fn watches_files(self) -> bool {
-        self.watches
-    }
-
-    /// What to ask of it when there is a new verdict.
-    pub(crate) fn refreshes(self) -> impl Iterator<Item = &'static str> {
-        let hints = self.refresh_hints.then_some(request::InlayHintRefreshRequest::METHOD);
-        let lenses = self.refresh_lenses.then_some(request::CodeLensRefresh::METHOD);
-        hints.into_iter().chain(lenses)
-    }
-}
-
-/// To ask for a word when a program changes on the disk.
-pub(crate) fn watchers() -> serde_json::Value {
-    let globs = ["**/*.rmpl", "**/*.lisp"].map(|glob| serde_json::json!({ "globPattern": glob }));
-    serde_json::json!({ "registrations": [{
-        "id": "kirk-files",
-        "method": notification::DidChangeWatchedFiles::METHOD,
-        "registerOptions": { "watchers": globs },
-    }] })
-}
-
-/// What the server can do.
-pub(crate) fn initialized(encoding: Encoding) -> InitializeResult {
-    let sync = TextDocumentSyncOptions {
-        open_close: Some(true),
-        change: Some(TextDocumentSyncKind::INCREMENTAL),
-        ..TextDocumentSyncOptions::default()
-    };
-    InitializeResult {
-        server_info: Some(ServerInfo {
-            name: "kirk".to_string(),
-            version: Some(env!("CARGO_PKG_VERSION").to_string()),
-        }),
-        capabilities: ServerCapabilities {
-            position_encoding: Some(encoding.kind()),
-            text_document_sync: Some(TextDocumentSyncCapability::Options(sync)),
-            hover_provider: Some(HoverProviderCapability::Simple(true)),
-            definition_provider: Some(OneOf::Left(true)),
-            references_provider: Some(OneOf::Left(true)),
-            document_highlight_provider: Some(OneOf::Left(true)),
-            rename_provider: Some(OneOf::Right(RenameOptions {
-                prepare_provider: Some(true),
-                work_done_progress_options: Default::default(),
-            })),
-            document_symbol_provider: Some(OneOf::Left(true)),
-            completion_provider: Some(CompletionOptions {
-                trigger_characters: Some(vec!["(".to_string(), ":".to_string(), " ".to_string()]),
-                ..CompletionOptions::default()
-            }),
-            signature_help_provider: Some(SignatureHelpOptions {
-                trigger_characters: Some(vec!["(".to_string(), " ".to_string()]),
-                ..SignatureHelpOptions::default()
-            }),
-            document_formatting_provider: Some(OneOf::Left(true)),
-            folding_range_provider: Some(FoldingRangeProviderCapability::Simple(true)),
-            semantic_tokens_provider: Some(
-                SemanticTokensOptions {
-                    legend: SemanticTokensLegend {
-                        token_types: legend(),
-                        token_modifiers: vec![SemanticTokenModifier::DEFINITION],
-                    },
-                    full: Some(SemanticTokensFullOptions::Bool(true)),
-                    ..SemanticTokensOptions::default()
-                }
-                .into(),
-            ),
-            code_action_provider: Some(CodeActionProviderCapability::Options(CodeActionOptions {
-                code_action_kinds: Some(vec![CodeActionKind::QUICKFIX]),
-                ..CodeActionOptions::default()
-            })),
-            inlay_hint_provider: Some(OneOf::Left(true)),
-            code_lens_provider: Some(CodeLensOptions { resolve_provider: Some(false) }),
-            ..ServerCapabilities::default()
-        },
-    }
-}
 
 /// Why there is no answer.
 pub(crate) struct Refusal(ErrorCode, String);
@@ -199,7 +90,7 @@ pub(crate) fn answer(server: &mut Server, request: Request) -> Response {
             })
         })
         .on::<request::Completion>(|server, params| {
-            let snippets = server.client.snippets;
+            let snippets = server.client.takes_snippets();
             server.at(&params.text_document_position, |view, offset, to| {
                 let found = completion(&view.analysis, offset).into_iter().enumerate();
                 let items: Vec<_> = found.map(|(rank, it)| item(it, rank, snippets, to)).collect();
@@ -214,6 +105,56 @@ pub(crate) fn answer(server: &mut Server, request: Request) -> Response {
             server.of(&params.text_document.uri, |view, to| {
                 Ok(layout(&view.analysis).map(|edits| edits.into_iter().map(|edit| to.edit(edit)).collect()))
             })
+        })
+        .on::<request::RangeFormatting>(|server, params| {
+            server.of(&params.text_document.uri, |view, to| {
+                let edits = layout_within(&view.analysis, to.span(params.range));
+                Ok(Some(edits.into_iter().map(|edit| to.edit(edit)).collect()))
+            })
+        })
+        .on::<request::WorkspaceSymbolRequest>(|server, params| {
+            let addresses: Vec<Uri> =
+                server.documents.values().map(|document| document.uri.clone()).collect();
+            let mut found = Vec::new();
+            for uri in addresses {
+                found.extend(server.of(&uri, |view, to| {
+                    let symbols = outline(&view.analysis).into_iter().filter(|it| it.is_like(&params.query));
+                    Ok(symbols.map(|it| to.information(it)).collect::<Vec<_>>())
+                })?);
+            }
+            Ok(Some(WorkspaceSymbolResponse::Flat(found)))
+        })
+        .on::<request::DocumentDiagnosticRequest>(|server, params| {
+            let uri = params.text_document.uri;
+            let problems =
+                server.documents.get_mut(&key(&uri)).map(|it| it.diagnostics()).unwrap_or_default();
+            server.of(&uri, |_, to| {
+                let items = problems.iter().map(|problem| shown(problem, to)).collect();
+                let full = FullDocumentDiagnosticReport { result_id: None, items };
+                let report = RelatedFullDocumentDiagnosticReport {
+                    full_document_diagnostic_report: full,
+                    ..RelatedFullDocumentDiagnosticReport::default()
+                };
+                Ok(DocumentDiagnosticReport::Full(report).into())
+            })
+        })
+        .on::<request::ExecuteCommand>(|server, params| {
+            let argument = |at: usize| params.arguments.get(at).and_then(|it| it.as_str());
+            let (VERDICT, Some(uri), Some(program)) = (params.command.as_str(), argument(0), argument(1))
+            else {
+                return Err(Refusal(
+                    ErrorCode::InvalidParams,
+                    format!("there is no command `{}` of that kind", params.command),
+                ));
+            };
+            let uri: Uri = uri.parse().map_err(|_| failed(format!("`{uri}` is no address")))?;
+            let said = server.of(&uri, |view, _| {
+                let lens = lenses(view).into_iter().find(|lens| lens.program == program);
+                Ok(lens.map(|lens| format!("`{program}` is {}", lens.title)))
+            })?;
+            let said = said.unwrap_or_else(|| format!("there is no verdict on `{program}` yet"));
+            server.say(&said);
+            Ok(Some(serde_json::Value::String(said)))
         })
         .on::<request::FoldingRangeRequest>(|server, params| {
             server.of(&params.text_document.uri, |view, _| {
@@ -248,11 +189,15 @@ pub(crate) fn answer(server: &mut Server, request: Request) -> Response {
             })
         })
         .on::<request::CodeLensRequest>(|server, params| {
+            let address = serde_json::json!(params.text_document.uri.as_str());
             server.of(&params.text_document.uri, |view, to| {
-                // Without a command to run, it is only a text.
                 let lens = |lens: crate::hints::Lens| lsp_types::CodeLens {
                     range: to.range(lens.span),
-                    command: Some(Command { title: lens.title, command: String::new(), arguments: None }),
+                    command: Some(Command {
+                        title: lens.title,
+                        command: VERDICT.to_string(),
+                        arguments: Some(vec![address.clone(), serde_json::json!(lens.program)]),
+                    }),
                     data: None,
                 };
                 Ok(Some(lenses(view).into_iter().map(lens).collect()))

@@ -27,8 +27,8 @@ use crate::document::Document;
 use crate::feedback::feedback;
 use crate::lines::Encoding;
 use crate::mission::{Mission, judge};
-use crate::requests;
 use crate::transport::{Incoming, Outgoing, read, send, write};
+use crate::{capabilities, requests};
 
 /// What happens to the server.
 enum Event {
@@ -121,7 +121,7 @@ pub(crate) struct Server {
     jobs: Sender<Job>,
     state: State,
     pub(crate) encoding: Encoding,
-    pub(crate) client: requests::Client,
+    pub(crate) client: capabilities::Client,
     pub(crate) documents: BTreeMap<String, Document>,
     /// Counts the requests to the client.
     asked: i32,
@@ -137,7 +137,7 @@ impl Server {
             jobs,
             state: State::New,
             encoding: Encoding::default(),
-            client: requests::Client::default(),
+            client: capabilities::Client::default(),
             documents: BTreeMap::new(),
             asked: 0,
             files,
@@ -231,9 +231,9 @@ impl Server {
         };
         let general = params.capabilities.general.as_ref();
         self.encoding = Encoding::negotiate(general.and_then(|it| it.position_encodings.as_deref()));
-        self.client = requests::Client::new(&params.capabilities);
+        self.client = capabilities::Client::new(&params.capabilities);
         self.state = State::Open;
-        Response::new_ok(request.id, requests::initialized(self.encoding))
+        Response::new_ok(request.id, capabilities::initialized(self.encoding))
     }
 
     fn notification(&mut self, notification: Notification) {
@@ -300,7 +300,7 @@ impl Server {
         if self.client.watches_files() {
             self.asked += 1;
             let (id, method) = (RequestId::from(self.asked), request::RegisterCapability::METHOD.to_string());
-            send(&self.outbox, Request { id, method, params: requests::watchers() });
+            send(&self.outbox, Request { id, method, params: capabilities::watchers() });
         }
     }
 
@@ -364,6 +364,9 @@ impl Server {
     fn publish(&mut self, uri: &str) {
         let Some(document) = self.documents.get_mut(uri) else { return };
         document.settled = true;
+        if self.client.pulls_diagnostics() {
+            return;
+        }
         let diagnostics = document.diagnostics();
         let analysis = document.analysis();
         let converter = Converter { analysis: &analysis, uri: &document.uri, encoding: self.encoding };
@@ -373,6 +376,12 @@ impl Server {
 
     fn notify<N: notification::Notification>(&self, params: N::Params) {
         send(&self.outbox, Notification::new(N::METHOD.to_string(), params));
+    }
+
+    /// Says something to the person at the editor.
+    pub(crate) fn say(&self, message: &str) {
+        let (typ, message) = (lsp_types::MessageType::INFO, message.to_string());
+        self.notify::<notification::ShowMessage>(lsp_types::ShowMessageParams { typ, message });
     }
 
     fn log(&self, message: &str) {

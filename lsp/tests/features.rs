@@ -521,3 +521,12 @@ fn a_file_of_several_missions_has_a_verdict_for_each() {
         ]
     );
 }
+
+#[test]
+fn a_name_that_something_has_already_is_refused_though_nothing_means_that() {
+    let (text, offset) = at(
+        "(define-control-program a^ () (declare (primitive)))\n(define-control-program b () (declare (primitive)))\n",
+    );
+    let refused = rename(&view(&text).analysis, offset, "b").unwrap_err();
+    assert_eq!(refused, "The name `b` is taken: in line 2, it would be defined twice.");
+}

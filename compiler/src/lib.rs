@@ -86,6 +86,7 @@ mod sexpr;
 mod source;
 pub mod typed;
 mod unfold;
+pub mod words;
 
 pub use analyse::symbols::{Place, Symbol, SymbolKind, Symbols, symbols};
 pub use code::{Code, explain};

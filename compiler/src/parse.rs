@@ -14,7 +14,6 @@ mod package;
 mod program;
 mod slips;
 
-pub(crate) use body::OPERATORS;
 pub(crate) use slips::amount::suffixed;
 pub(crate) use slips::elsewhere::{Instead, instead_of_operator};
 
@@ -23,7 +22,7 @@ use std::collections::BTreeSet;
 use crate::ast::{Ident, NamedNumber, Program};
 use crate::form::{Form, FormKind};
 use crate::problem::Problems;
-use crate::read::foreign::DEFINITIONS;
+use crate::words::DEFINITIONS;
 use slips::{expected, unexpected};
 
 /// The package of definitions that no `in-package` comes before.

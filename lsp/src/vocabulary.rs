@@ -386,3 +386,16 @@ pub(crate) const WORDS: &[Word] = &[
         about: "What is left over when the first is divided by the second.",
     },
 ];
+
+#[cfg(test)]
+mod tests {
+    use kirk_compiler::words::{DECLARATIONS, DEFINITIONS, OPERATORS, UNITS};
+
+    #[test]
+    fn every_word_of_the_language_has_its_page() {
+        let units = UNITS.map(|(unit, _)| unit);
+        let words = DEFINITIONS.iter().chain(&OPERATORS).chain(&DECLARATIONS).chain(&units);
+        let missing: Vec<&&str> = words.filter(|name| super::word(name).is_none()).collect();
+        assert!(missing.is_empty(), "{missing:?}");
+    }
+}

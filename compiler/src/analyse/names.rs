@@ -7,9 +7,10 @@ use crate::code::Code;
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::form::clip;
 use crate::nearest::nearest;
-use crate::parse::{DEFAULT_PACKAGE, OPERATORS, instead_of_operator};
+use crate::parse::{DEFAULT_PACKAGE, instead_of_operator};
 use crate::problem::Problems;
 use crate::source::Span;
+use crate::words::OPERATORS;
 
 type Table = BTreeMap<(String, String), usize>;
 

@@ -7,15 +7,7 @@ use crate::ast::{Amount, AmountKind};
 use crate::calculate::Operator;
 use crate::form::{Form, FormKind, Symbol};
 use crate::problem::Problems;
-
-/// The units of time, in microseconds.
-pub(super) const UNITS: [(&str, i64); 5] = [
-    ("microseconds", 1),
-    ("seconds", 1_000_000),
-    ("minutes", 60_000_000),
-    ("hours", 3_600_000_000),
-    ("days", 86_400_000_000),
-];
+use crate::words::UNITS;
 
 /// Reads a duration or another number. `what` names it in messages.
 pub(super) fn amount(form: &Form, what: &str, problems: &mut Problems) -> Amount {

@@ -10,19 +10,7 @@ use crate::diagnostic::Diagnostic;
 use crate::form::{Form, FormKind};
 use crate::problem::Problems;
 use crate::source::Span;
-
-/// The operators of bodies.
-pub(crate) const OPERATORS: [&str; 9] = [
-    "sequence",
-    "parallel",
-    "with-temporal-constraint",
-    "delay",
-    "let",
-    "let*",
-    "dotimes",
-    "label",
-    "between",
-];
+use crate::words::OPERATORS;
 
 /// Parses the forms of a body.
 pub(super) fn bodies(forms: &[Form], problems: &mut Problems) -> Vec<Body> {

@@ -9,12 +9,7 @@ use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::form::Form;
 use crate::problem::Problems;
-
-pub(super) const DECLARATIONS: [&str; 4] = ["primitive", "duration", "requires", "effect"];
-
-/// The keywords of `simple`.
-pub(super) const BOUNDS: [&str; 4] =
-    ["lower-bound", "upper-bound", "min-observation-delay", "max-observation-delay"];
+use crate::words::BOUNDS;
 
 /// Adds declarations, which stand in a `declare` or should, to the program.
 pub(super) fn declare(declarations: &[Form], program: &mut ControlProgram, problems: &mut Problems) {

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::body::{OPERATORS, bodies};
+use super::body::bodies;
 use super::slips::{self, unexpected};
 use super::{declaration, ident};
 use crate::ast::{ControlProgram, Ident};
@@ -11,6 +11,7 @@ use crate::diagnostic::Diagnostic;
 use crate::form::{Form, FormKind, clip};
 use crate::problem::Problems;
 use crate::source::Span;
+use crate::words::OPERATORS;
 
 /// Parses the definition of a program; `defined` are the names of all programs.
 pub(super) fn control_program(

@@ -3,10 +3,7 @@
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::source::Span;
-
-/// The words that begin a top-level form.
-pub(crate) const DEFINITIONS: [&str; 6] =
-    ["define-control-program", "defpackage", "in-package", "defclass", "defparameter", "defconstant"];
+use crate::words::DEFINITIONS;
 
 /// True if the text begins with `(` and the name of a top-level form.
 pub(super) fn begins_definition(text: &str) -> bool {

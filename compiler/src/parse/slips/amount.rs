@@ -8,8 +8,9 @@ use crate::code::Code;
 use crate::diagnostic::{Diagnostic, Edit};
 use crate::form::{Form, FormKind, clip};
 use crate::nearest::nearest;
-use crate::parse::amount::{UNITS, number, unit};
+use crate::parse::amount::{number, unit};
 use crate::source::Span;
+use crate::words::UNITS;
 
 /// Something that is no number. `what` it should be is named in the message.
 pub(in crate::parse) fn no_number(form: &Form, what: &str) -> Diagnostic {

@@ -7,9 +7,10 @@ use crate::diagnostic::{Diagnostic, Edit};
 use crate::form::{Form, FormKind, clip, write};
 use crate::nearest::nearest;
 use crate::parse::amount::{amount, is_calculation};
-use crate::parse::body::{OPERATORS, bounds, is_constraint, limits};
+use crate::parse::body::{bounds, is_constraint, limits};
 use crate::problem::Problems;
 use crate::source::Span;
+use crate::words::OPERATORS;
 
 /// How `with-temporal-constraint` is written.
 pub(in crate::parse) const WITHIN: &str =

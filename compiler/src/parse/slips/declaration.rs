@@ -7,10 +7,11 @@ use crate::diagnostic::{Diagnostic, Edit};
 use crate::form::{Form, FormKind, clip, write};
 use crate::nearest::nearest;
 use crate::parse::amount::is_calculation;
-use crate::parse::declaration::{BOUNDS, DECLARATIONS, Written};
+use crate::parse::declaration::Written;
 use crate::parse::options::options;
 use crate::problem::Problems;
 use crate::source::Span;
+use crate::words::{BOUNDS, DECLARATIONS};
 
 const SHAPE: &str = "A duration is `(duration (simple :lower-bound 15 :upper-bound 20))`, with `:contingent t` at its end if Nature decides.";
 

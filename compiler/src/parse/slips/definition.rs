@@ -9,12 +9,10 @@ use crate::code::Code;
 use crate::diagnostic::{Diagnostic, Edit};
 use crate::form::{Form, FormKind, clip, write};
 use crate::nearest::nearest;
-use crate::parse::body::OPERATORS;
-use crate::parse::declaration::DECLARATIONS;
 use crate::parse::ident;
 use crate::problem::Problems;
-use crate::read::foreign::DEFINITIONS;
 use crate::source::Span;
+use crate::words::{DECLARATIONS, DEFINITIONS, OPERATORS};
 
 const SHAPE: &str = "A program is `(define-control-program name (parameter...) (declare ...) body...)`.";
 

@@ -1,5 +1,7 @@
 //! A conflict in the words and places of the program: why it cannot be executed in every case.
 
+mod amounts;
+
 use kirk_network::{Conflict, Duration, Network, Part, Share};
 
 use crate::code::Code;
@@ -11,6 +13,9 @@ use crate::source::Span;
 const PARALLEL: &str = "this `parallel`";
 /// What the joins of a `parallel` come to where Nature has no say.
 const JOINED: &str = "joined here: without slack, all parts start together and end together";
+
+/// Another amount alone would not do, whatever it is.
+const NOT_ALONE: &str = " No change of one amount alone is enough: several have to change, or what comes before what, or what is joined.";
 
 /// What is found is one conflict, not all of them.
 const AFTERWARDS: &str = "; another conflict may show then.";
@@ -68,8 +73,9 @@ fn advice(conflict: &Conflict, network: &Network, origins: &Origins) -> String {
         matches!(part, Part::RequirementUpper(index)
         if origins.requirements.get(index).is_some_and(|origin| origin.kind != OriginKind::Join))
     });
+    let amounts = amounts::enough_alone(conflict, network, origins);
     let mut advice = Vec::new();
-    if bounded {
+    if bounded && amounts.is_none() {
         advice.push("a longer upper bound");
     }
     if joined {
@@ -78,17 +84,27 @@ fn advice(conflict: &Conflict, network: &Network, origins: &Origins) -> String {
     if side_by_side && !joined {
         advice.push("slack (`:slack t`) in the `parallel`");
     }
-    if has(&|part| matches!(part, Part::LinkUpper(_) | Part::LinkLower(_))) {
+    if amounts.is_none() && has(&|part| matches!(part, Part::LinkUpper(_) | Part::LinkLower(_))) {
         advice.push("a narrower contingent duration");
     }
-    if late {
+    if late && amounts.is_none() {
         advice.push("news that comes sooner");
     }
+    match amounts.as_deref() {
+        Some([]) => text.push_str(NOT_ALONE),
+        Some([one]) => text.push_str(&format!(" This alone is enough: {one}.")),
+        Some(several) => text.push_str(&format!(" Each of these alone is enough: {}.", several.join("; "))),
+        None => {}
+    }
+    let takes = match amounts.as_deref() {
+        Some([_, ..]) => "Or it takes",
+        _ => "It would take",
+    };
     let advice = match advice.split_last() {
         Some((last, rest)) if !rest.is_empty() => {
-            format!(" It would take {} or {last}{AFTERWARDS}", rest.join(", "))
+            format!(" {takes} {} or {last}{AFTERWARDS}", rest.join(", "))
         }
-        Some((last, _)) => format!(" It would take {last}{AFTERWARDS}"),
+        Some((last, _)) => format!(" {takes} {last}{AFTERWARDS}"),
         None => String::new(),
     };
     text.push_str(&advice);

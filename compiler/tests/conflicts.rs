@@ -38,6 +38,42 @@ fn the_news_comes_too_late_to_act_on() {
 }
 
 #[test]
+fn each_amount_that_is_said_to_be_enough_alone_is_and_no_less() {
+    let mission = example("too-late");
+    let told = explanation(&mission);
+    for (said, written, enough, less) in [
+        ("at most 25 s instead of 20 s", ":upper-bound 20)\n      ", "25", "24.999999"),
+        ("at least 5 s instead of 10 s", ":lower-bound 10 :upper-bound 15", "5", "5.000001"),
+        ("within 10 s instead of 15 s", ":max-observation-delay 15", "10", "10.000001"),
+    ] {
+        assert!(told.contains(said), "{said} in {told}");
+        assert!(mission.contains(written), "{written} in {mission}");
+        let amount = written.split([' ', ')']).nth(1).unwrap();
+        let with = |other: &str| mission.replace(written, &written.replacen(amount, other, 1));
+        assert_eq!(explanation(&with(enough)), "controllable", "{said}");
+        assert_ne!(explanation(&with(less)), "controllable", "{said}");
+    }
+}
+
+#[test]
+fn orders_in_a_circle_are_no_matter_of_amounts() {
+    let told = explanation(
+        "(define-control-program hold ()
+  (declare (primitive) (duration (simple :lower-bound 10 :upper-bound 20))))
+(define-control-program inspect ()
+  (declare (primitive) (duration (simple :lower-bound 10 :upper-bound 30) :contingent t)))
+(define-control-program main ()
+  (parallel (:slack t)
+    (hold)
+    (inspect)
+    (between (end hold) (start inspect) (simple-temporal :lower-bound 0))
+    (between (end inspect) (start hold) (simple-temporal :lower-bound 0))))
+",
+    );
+    assert!(told.contains("No change of one amount alone is enough"), "{told}");
+}
+
+#[test]
 fn a_contingent_duration_inside_a_tighter_bound() {
     insta::assert_snapshot!(explanation(
         "(define-control-program drive ()

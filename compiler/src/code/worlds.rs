@@ -101,8 +101,10 @@ pub(super) const NOT_CONTROLLABLE: Page = Page {
 bounds that do not go together and adds them up: each contributes time (`+`) or needs it (`-`), and the
 sum is below zero: so much is missing between them. At least one of them has to change: a longer deadline, a
 shorter activity, a narrower contingent duration, news that comes sooner, or slack where two events are forced
-together. This is one conflict, not necessarily the only or the worst one: when it is settled another may
-show, so more than is missing here may be needed. A schedule for the average case may exist all the same;
+together. This is one conflict, not necessarily the only or the worst one, so more than its sum may be
+needed. The help says what is enough: each amount it names, changed alone to the value it gives, makes the
+mission controllable, and a microsecond less of a change does not. What is ours and the news come first;
+Nature's durations are named only where nothing else is enough. If no amount alone will do, it says so. A schedule for the average case may exist all the same;
 kirk promises more than that.",
     wrong: "(define-control-program drive ()
   (declare (primitive) (duration (simple :lower-bound 15 :upper-bound 20) :contingent t)))

@@ -50,6 +50,8 @@ pub(crate) enum Command {
     Replay(Replay),
     /// Prints all diagnostics and the verdict for each file.
     Check(Check),
+    /// Prints how much is left of a "yes": how far each bound can move, how late everything may start, how late news may be.
+    Slack(SlackOf),
     /// Prints what a mission is compiled to.
     Compile(Compile),
     /// Checks a recorded execution against a mission, independently of what executed it.
@@ -433,6 +435,18 @@ pub(crate) enum StageFormat {
     Sexpr,
     Dot,
     Graphml,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SlackOf {
+    /// The mission or network, or `-` for standard input; several files of RMPL are one program.
+    #[arg(value_name = "FILE", required = true)]
+    pub(crate) files: Vec<String>,
+    #[command(flatten)]
+    pub(crate) selection: Selection,
+    /// How to print the result.
+    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
+    pub(crate) format: TextOrJson,
 }
 
 #[derive(Debug, Args)]

@@ -22,6 +22,7 @@ mod replay;
 mod report;
 mod run;
 mod sarif;
+mod slack;
 mod timetable;
 mod verify;
 mod watch;
@@ -51,6 +52,7 @@ fn execute(arguments: &Arguments) -> Status {
         Command::Resume(resume) => execute::resume(resume, &arguments.common),
         Command::Replay(replay) => replay::replay(replay, &arguments.common),
         Command::Check(check) => check::check(check, &arguments.common),
+        Command::Slack(slack) => slack::slack_of(slack, &arguments.common),
         Command::Compile(compile) => compile::compile(compile, &arguments.common),
         Command::Verify(verify) => verify::verify(verify, &arguments.common),
         Command::Generate(generate) => generate::generate(generate, &arguments.common),

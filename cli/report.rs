@@ -167,7 +167,13 @@ impl<'a> Reporter<'a> {
         SuggestionJson { title: &suggestion.title, edits: edits.collect() }
     }
 
-    fn name(&self, span: Span) -> &str {
+    /// `FILE:LINE:COLUMN` of a place.
+    pub(crate) fn at(&self, span: Span) -> Option<String> {
+        let (line, column) = self.position(span.source, span.start)?;
+        Some(format!("{}:{line}:{column}", self.name(span)))
+    }
+
+    pub(crate) fn name(&self, span: Span) -> &str {
         self.sources.get(span.source as usize).map_or("", |source| source.name.as_str())
     }
 

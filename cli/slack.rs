@@ -1,0 +1,436 @@
+//! `kirk slack`: how much is left of a "yes": how far each bound can move, and how late everything may start.
+
+use std::collections::BTreeMap;
+use std::io;
+
+use kirk_compiler::episode::Kind;
+use kirk_compiler::{OriginKind, Origins, Span, events_of};
+use kirk_network::json::Seconds;
+use kirk_network::merge::{Merged, merge};
+use kirk_network::promise::{promises, stretch};
+use kirk_network::slack::{Factor, Slack, beyond, bounds, common_factor, slack};
+use kirk_network::stnu::TooLarge;
+use kirk_network::vary::Knob;
+use kirk_network::walk::{Step, walk};
+use kirk_network::{Bound, Duration, EventId, Network, Part, Time};
+use serde::Serialize;
+
+use crate::args::{Common, SlackOf, TextOrJson};
+use crate::check::judge;
+use crate::foreign::one_line;
+use crate::input::{Input, load_all};
+use crate::json::line;
+use crate::output::{Status, print, print_line};
+use crate::report::{Reporter, SpanJson};
+
+pub(crate) fn slack_of(arguments: &SlackOf, common: &Common) -> io::Result<Status> {
+    let mut input = load_all(&arguments.files, &arguments.selection);
+    let judged = judge(&mut input);
+    let reporter = Reporter::new(&input.sources);
+    let file = arguments.files.join(" ");
+    let is_yes = judged.as_ref().is_some_and(|judged| judged.conflict.is_none());
+    let left = match (&input.network, is_yes) {
+        (Some(network), true) => measure(network, &input).unwrap_or_default(),
+        _ => None,
+    };
+    let Some(left) = left else {
+        reporter.show(&input.diagnostics, common)?;
+        let status = if judged.is_some() { Status::No } else { Status::Wrong };
+        if arguments.format == TextOrJson::Json {
+            print(&line(&SlackJson::nothing(&file))?)?;
+        } else if status == Status::No {
+            print_line(&format!("{file}: nothing is left: it is not controllable, `kirk check` says why"))?;
+        }
+        return Ok(status);
+    };
+    match arguments.format {
+        TextOrJson::Json => print(&line(&SlackJson::new(&file, &left, &reporter))?)?,
+        TextOrJson::Text => {
+            print_line(&format!(
+                "{file}: `{}` is controllable, and this is left",
+                input.program(&arguments.selection)
+            ))?;
+            for text in left.lines(&reporter) {
+                print_line(&one_line(&text))?;
+            }
+        }
+    }
+    Ok(Status::Yes)
+}
+
+/// All that is left.
+struct Left {
+    /// The tightest first.
+    bounds: Vec<Measured>,
+    /// What the tightest rests on: what each step needs, and what it is.
+    critical: Vec<(Duration, String)>,
+    activities: Vec<Activity>,
+    /// How late each news may be alone: the event, its longest delay, and the longest it could have.
+    news: Vec<(String, Bound, Bound)>,
+    factor: Option<Factor>,
+}
+
+struct Measured {
+    slack: Slack,
+    what: String,
+    side: &'static str,
+    place: Option<Span>,
+}
+
+/// An activity of ours.
+struct Activity {
+    name: String,
+    latest: Option<Time>,
+    stretch: Option<Bound>,
+}
+
+fn measure(network: &Network, input: &Input) -> Result<Option<Left>, TooLarge> {
+    let knobs = knobs(network, input);
+    let all: Vec<Knob> = knobs.iter().map(|(knob, ..)| knob.clone()).collect();
+    let Some(found) = slack(network, &all)? else { return Ok(None) };
+    let measured = found.into_iter().zip(knobs).map(|(slack, (knob, what, place))| Measured {
+        slack,
+        what,
+        side: side(knob.parts()[0]),
+        place,
+    });
+    let mut bounds: Vec<Measured> = measured.collect();
+    bounds.sort_by_key(|bound| bound.slack.room.map_or(i64::MAX, Duration::as_micros));
+    let tightest = bounds.iter().find(|bound| bound.slack.room.is_some());
+    let conflict = match tightest {
+        Some(tightest) => beyond(network, &tightest.slack)?,
+        None => None,
+    };
+    let steps = conflict.and_then(|conflict| walk(network, &conflict)).unwrap_or_default();
+    // A microsecond further it would be one too many; what is told is what is written.
+    let step = |step: Step| {
+        let bound = step.part.bound(network);
+        let needs = if step.needs < Duration::ZERO { -bound } else { bound };
+        Some((needs, words(step.part, network, input)?))
+    };
+    let critical = steps.into_iter().filter_map(step).collect();
+    let news = bounds.iter().filter_map(|bound| match bound.slack.knob.parts()[0] {
+        Part::DelayMax(index) => {
+            let event = network.label(network.contingents()[index].to).to_string();
+            Some((event, bound.slack.value, bound.slack.most))
+        }
+        _ => None,
+    });
+    let news = news.collect();
+    let (activities, factor) = (activities(network, input)?, common_factor(network)?);
+    Ok(Some(Left { bounds, critical, activities, news, factor }))
+}
+
+/// What can be moved: each bound that is written, with what it is and where. What is written once moves together.
+fn knobs(network: &Network, input: &Input) -> Vec<(Knob, String, Option<Span>)> {
+    let Some((origins, _)) = input.origins() else {
+        let place = |part: Part| {
+            let place = input.places()?.of(part)?;
+            Some(Span::new(0, place.start, place.end))
+        };
+        let named = bounds(network).into_iter().filter_map(|knob| {
+            let part = knob.parts()[0];
+            Some((knob, words(part, network, input)?, place(part)))
+        });
+        return named.filter(|(knob, ..)| is_worth_a_line(knob.parts()[0], network)).collect();
+    };
+    let mut written: BTreeMap<(Span, &'static str), Vec<Part>> = BTreeMap::new();
+    for part in bounds(network).iter().map(|knob| knob.parts()[0]) {
+        if let Some(place) = written_at(part, origins).filter(|_| is_worth_a_line(part, network)) {
+            written.entry((place, side(part))).or_default().push(part);
+        }
+    }
+    let knob = |((place, _), parts): ((Span, &'static str), Vec<Part>)| {
+        let mut what = words(parts[0], network, input)?;
+        if parts.len() > 1 {
+            what.push_str(&format!(" ({} occurrences together)", parts.len()));
+        }
+        Some((Knob::together(parts)?, what, Some(place)))
+    };
+    written.into_iter().filter_map(knob).collect()
+}
+
+/// News that comes at once, or may be early, is nothing to measure unless somebody says so.
+fn is_worth_a_line(part: Part, network: &Network) -> bool {
+    match part {
+        Part::DelayMin(index) => network.contingents()[index].delay.min > Duration::ZERO,
+        _ => true,
+    }
+}
+
+/// Where a bound is written by itself, if it is.
+fn written_at(part: Part, origins: &Origins) -> Option<Span> {
+    let (origin, side) = match part {
+        Part::RequirementLower(index) => (origins.requirements.get(index)?, 0),
+        Part::RequirementUpper(index) => (origins.requirements.get(index)?, 1),
+        Part::LinkLower(index) => (origins.contingents.get(index)?, 0),
+        Part::LinkUpper(index) => (origins.contingents.get(index)?, 1),
+        Part::DelayMin(index) => (origins.contingents.get(index)?, 2),
+        Part::DelayMax(index) => (origins.contingents.get(index)?, 3),
+        Part::AfterOrigin | Part::Join(_) => return None,
+    };
+    let is_written = !matches!(origin.kind, OriginKind::Join | OriginKind::Order)
+        && (origin.places[side] != origin.span || matches!(part, Part::LinkUpper(_) | Part::DelayMax(_)));
+    is_written.then_some(origin.places[side])
+}
+
+fn side(part: Part) -> &'static str {
+    match part {
+        Part::RequirementUpper(_) | Part::LinkUpper(_) => "upper",
+        Part::RequirementLower(_) | Part::LinkLower(_) => "lower",
+        Part::DelayMin(_) => "min-delay",
+        Part::DelayMax(_) => "max-delay",
+        Part::AfterOrigin | Part::Join(_) => "none",
+    }
+}
+
+/// What a bound is about; `None` for what nobody wrote.
+fn words(part: Part, network: &Network, input: &Input) -> Option<String> {
+    if let Some((origins, _)) = input.origins() {
+        let (origin, nature) = match part {
+            Part::RequirementUpper(index) | Part::RequirementLower(index) => {
+                (origins.requirements.get(index)?, false)
+            }
+            Part::LinkLower(index) | Part::LinkUpper(index) => (origins.contingents.get(index)?, true),
+            Part::DelayMin(index) | Part::DelayMax(index) => {
+                return Some(format!(
+                    "how late the end of {} is heard",
+                    origins.contingents.get(index)?.subject
+                ));
+            }
+            Part::AfterOrigin | Part::Join(_) => return None,
+        };
+        return match origin.kind {
+            OriginKind::Join | OriginKind::Order => None,
+            OriginKind::Between => Some(origin.subject.clone()),
+            _ if nature => Some(format!("how long {} takes, Nature decides", origin.subject)),
+            _ => Some(format!("how long {} takes", origin.subject)),
+        };
+    }
+    let link = |index: usize| network.contingents()[index];
+    Some(match part {
+        Part::RequirementUpper(index) | Part::RequirementLower(index) => {
+            let requirement = network.requirements()[index];
+            let (from, to) = (network.label(requirement.from), network.label(requirement.to));
+            format!("requirements[{index}]: from `{from}` to `{to}`")
+        }
+        Part::LinkLower(index) | Part::LinkUpper(index) => {
+            let (from, to) = (network.label(link(index).from), network.label(link(index).to));
+            format!("contingents[{index}]: from `{from}` to `{to}`, Nature decides")
+        }
+        Part::DelayMin(index) | Part::DelayMax(index) => {
+            format!("contingents[{index}]: how late `{}` is heard", network.label(link(index).to))
+        }
+        Part::AfterOrigin | Part::Join(_) => return None,
+    })
+}
+
+/// The activities of ours, with the latest start that can be promised and how long each may be made to take. Of a network, the
+/// events of ours.
+fn activities(network: &Network, input: &Input) -> Result<Vec<Activity>, TooLarge> {
+    let Merged { network: merged, event_of, .. } = merge(network);
+    let ours = |event: EventId| {
+        let event = event_of[event.index()];
+        merged.link_of(event).is_none() && event != merged.origin()
+    };
+    let starts: Vec<(String, EventId, Option<usize>)> =
+        match input.compilation().and_then(|it| it.episodes.as_ref()) {
+            Some(root) => events_of(root)
+                .into_iter()
+                .filter(|(episode, (start, _))| episode.kind == Kind::Primitive && ours(*start))
+                .map(|(episode, (start, end))| {
+                    let takes = network.requirements().iter().position(|it| (it.from, it.to) == (start, end));
+                    (episode.name.clone(), start, takes)
+                })
+                .collect(),
+            None => {
+                let events = network.event_ids().filter(|&event| ours(event));
+                events.map(|event| (network.label(event).to_string(), event, None)).collect()
+            }
+        };
+    let events: Vec<EventId> = starts.iter().map(|(_, event, _)| *event).collect();
+    let promised = promises(network, &events)?.unwrap_or_default();
+    let mut activities = Vec::new();
+    for ((name, _, takes), promise) in starts.into_iter().zip(promised) {
+        let stretch = takes.map(|index| stretch(network, index)).transpose()?.flatten();
+        activities.push(Activity { name, latest: promise.from, stretch });
+    }
+    Ok(activities)
+}
+
+impl Left {
+    fn lines(&self, reporter: &Reporter<'_>) -> Vec<String> {
+        let mut lines = vec![String::new(), format!("{:>12}  {:>10}  {:<22}  what", "room", "now", "may be")];
+        for Measured { slack, what, place, side } in &self.bounds {
+            // News that comes at once is among the news.
+            if *side == "max-delay" && slack.value == Bound::Finite(Duration::ZERO) {
+                continue;
+            }
+            let room = slack.room.map_or("any".to_string(), |room| format!("{room} s"));
+            let at = place.and_then(|place| reporter.at(place)).map_or(String::new(), |at| format!("  {at}"));
+            lines.push(format!(
+                "{room:>12}  {:>10}  {:<22}  {what}, {}{at}",
+                value(slack.value),
+                range(slack),
+                side.replace("-delay", "imum").replace("upper", "at most").replace("lower", "at least")
+            ));
+        }
+        if !self.critical.is_empty() {
+            lines.extend([String::new(), "what the tightest of them rests on".to_string()]);
+            for (needs, text) in &self.critical {
+                let needed = if *needs < Duration::ZERO {
+                    format!("{} s are there", -*needs)
+                } else {
+                    format!("needs {needs} s")
+                };
+                lines.push(format!("{needed:>22}  {text}"));
+            }
+        }
+        if !self.activities.is_empty() {
+            lines.extend([String::new(), format!("{:>12}  {:>12}  activity", "latest start", "may take")]);
+            for Activity { name, latest, stretch } in &self.activities {
+                let latest = latest.map_or("any".to_string(), |latest| format!("{latest} s"));
+                let takes = stretch.map_or(String::new(), value);
+                lines.push(format!("{latest:>12}  {takes:>12}  {name}"));
+            }
+        }
+        if !self.news.is_empty() {
+            lines.extend([String::new(), format!("{:>12}  {:>12}  news of", "late by", "at most")]);
+            for (event, now, most) in &self.news {
+                lines.push(format!("{:>12}  {:>12}  {event}", value(*now), value(*most)));
+            }
+        }
+        match self.factor {
+            Some(Factor::Unlimited) => lines.push("all news together may be as late as it likes".to_string()),
+            Some(Factor::Millionths(millionths)) => {
+                lines.push(format!(
+                    "all news together may be {} times as late",
+                    Duration::from_micros(millionths)
+                ));
+            }
+            None => {}
+        }
+        lines
+    }
+}
+
+fn value(bound: Bound) -> String {
+    bound.finite().map_or("any".to_string(), |bound| format!("{bound} s"))
+}
+
+/// Where the value may lie.
+fn range(slack: &Slack) -> String {
+    match (slack.least.finite(), slack.most.finite()) {
+        (Some(least), Some(most)) => format!("{least} to {most} s"),
+        (Some(least), None) => format!("{least} s or more"),
+        (None, Some(most)) => format!("{most} s or less"),
+        (None, None) => "anything".to_string(),
+    }
+}
+
+/// `kirk-slack/1`. What has no limit is `null`.
+#[derive(Serialize)]
+struct SlackJson<'a> {
+    format: &'static str,
+    file: &'a str,
+    controllable: bool,
+    slack: Vec<BoundJson<'a>>,
+    critical: Vec<StepJson<'a>>,
+    activities: Vec<ActivityJson<'a>>,
+    budget: Vec<NewsJson<'a>>,
+    /// By what factor all longest delays may grow together; absent if no news is late.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    factor: Option<Option<Seconds>>,
+}
+
+#[derive(Serialize)]
+struct BoundJson<'a> {
+    what: &'a str,
+    file: Option<&'a str>,
+    span: Option<SpanJson>,
+    bound: &'static str,
+    value: Option<Seconds>,
+    least: Option<Seconds>,
+    most: Option<Seconds>,
+    room: Option<Seconds>,
+}
+
+#[derive(Serialize)]
+struct StepJson<'a> {
+    what: &'a str,
+    needs: Seconds,
+}
+
+#[derive(Serialize)]
+struct ActivityJson<'a> {
+    name: &'a str,
+    latest_start: Option<Seconds>,
+    may_take: Option<Seconds>,
+}
+
+#[derive(Serialize)]
+struct NewsJson<'a> {
+    event: &'a str,
+    value: Option<Seconds>,
+    most: Option<Seconds>,
+}
+
+fn seconds(bound: Bound) -> Option<Seconds> {
+    bound.finite().map(Seconds)
+}
+
+impl<'a> SlackJson<'a> {
+    fn nothing(file: &'a str) -> SlackJson<'a> {
+        SlackJson {
+            format: "kirk-slack/1",
+            file,
+            controllable: false,
+            slack: Vec::new(),
+            critical: Vec::new(),
+            activities: Vec::new(),
+            budget: Vec::new(),
+            factor: None,
+        }
+    }
+
+    fn new(file: &'a str, left: &'a Left, reporter: &'a Reporter<'_>) -> SlackJson<'a> {
+        let bound = |Measured { slack, what, side, place }: &'a Measured| BoundJson {
+            what,
+            file: place.map(|place| reporter.name(place)),
+            span: place.and_then(|place| reporter.span_json(place)),
+            bound: side,
+            value: seconds(slack.value),
+            least: seconds(slack.least),
+            most: seconds(slack.most),
+            room: slack.room.map(Seconds),
+        };
+        SlackJson {
+            controllable: true,
+            slack: left.bounds.iter().map(bound).collect(),
+            critical: left
+                .critical
+                .iter()
+                .map(|(needs, what)| StepJson { what, needs: Seconds(*needs) })
+                .collect(),
+            activities: left
+                .activities
+                .iter()
+                .map(|Activity { name, latest, stretch }| ActivityJson {
+                    name,
+                    latest_start: latest.map(|latest| Seconds(Duration::from_micros(latest.as_micros()))),
+                    may_take: stretch.and_then(seconds),
+                })
+                .collect(),
+            budget: left
+                .news
+                .iter()
+                .map(|(event, value, most)| NewsJson { event, value: seconds(*value), most: seconds(*most) })
+                .collect(),
+            factor: left.factor.map(|factor| match factor {
+                Factor::Millionths(millionths) => Some(Seconds(Duration::from_micros(millionths))),
+                Factor::Unlimited => None,
+            }),
+            ..SlackJson::nothing(file)
+        }
+    }
+}

@@ -11,6 +11,7 @@
 mod implied;
 mod rigid;
 
+use std::cmp::Reverse;
 use std::collections::VecDeque;
 
 use crate::controllability::{Solution, Wait, solve};
@@ -59,9 +60,18 @@ impl Dispatchable {
 /// [`TooLarge`] if the durations add up to more than 64-bit microseconds can hold.
 pub fn dispatchable(stnu: &Stnu) -> Result<Option<Dispatchable>, TooLarge> {
     let Some(Consequences { mut edges, waits, potential }) = consequences(stnu)? else { return Ok(None) };
+    let mut rigid = Rigid::new(stnu, &edges, &potential);
     let written = precedence::written(stnu);
-    let rank = precedence::ranks(stnu.nodes, &written, |node| node);
-    let rigid = Rigid::new(stnu, &edges, &potential, &rank);
+    // What is written round a cycle is one moment; everything else is in order by its times.
+    let mut moments = written.clone();
+    moments.retain(|&(later, earlier)| rigid.is_one_moment(later, earlier));
+    let rank = match moments.is_empty() {
+        true => (0..stnu.nodes).collect(),
+        false => precedence::ranks(stnu.nodes, &moments, |node| node),
+    };
+    if !moments.is_empty() {
+        rigid.lead_by(&rank, stnu);
+    }
     // What Nature keeps by herself helps to make other edges needless, and is needless itself.
     let nature = rigid.contracted(&nature_keeps(stnu));
     edges.extend(nature_keeps(stnu));
@@ -86,7 +96,8 @@ pub fn dispatchable(stnu: &Stnu) -> Result<Option<Dispatchable>, TooLarge> {
         simultaneous: rigid.simultaneous(),
         follows: Vec::new(),
     };
-    net.follows = follows(&net, written, &rank);
+    let order = Order { rank: &rank, rigid: &rigid, potential: &potential };
+    net.follows = follows(&net, written, &order);
     Ok(Some(net))
 }
 
@@ -95,7 +106,7 @@ pub fn dispatchable(stnu: &Stnu) -> Result<Option<Dispatchable>, TooLarge> {
 ///
 /// Nothing waits for itself in the end: round a cycle of holds the distances add up to 0 at most, so they are 0 and all its
 /// nodes simultaneous; and among those the leader is of the least rank, and ranks order what is written.
-fn follows(net: &Dispatchable, mut written: Vec<(u32, u32)>, rank: &[u32]) -> Vec<(u32, u32)> {
+fn follows(net: &Dispatchable, mut written: Vec<(u32, u32)>, order: &Order<'_>) -> Vec<(u32, u32)> {
     let mut activation = vec![NONE; net.nodes as usize];
     net.links.iter().for_each(|link| activation[link.contingent as usize] = link.activation);
     let natures = |node: u32| activation[node as usize] != NONE;
@@ -103,32 +114,53 @@ fn follows(net: &Dispatchable, mut written: Vec<(u32, u32)>, rank: &[u32]) -> Ve
         let known = net.edges.binary_search_by_key(&(later, earlier), |edge| (edge.from, edge.to));
         known.is_ok_and(|at| net.holds(&net.edges[at]))
     };
-    written.retain(|&(later, earlier)| {
-        // What is time zero by definition has not to be waited for.
-        let [later, earlier] = [later, earlier].map(|node| rank[node as usize]);
-        later > earlier && earlier != rank[0]
-    });
-    written.sort_unstable_by_key(|&(later, earlier)| (rank[later as usize], later, earlier));
+    // What is time zero by definition has not to be waited for.
+    written
+        .retain(|&(later, earlier)| !order.rigid.is_one_moment(earlier, 0) && !order.is_same(later, earlier));
+    written.sort_unstable_by_key(|&(later, earlier)| (order.key(later), later, earlier));
     written.dedup();
-    // What follows an event follows all that are one moment with it.
-    let moments = Rows::new(net.nodes, rank.iter().copied());
+    // What follows an event follows all that are one moment with it by what is written.
+    let moments = Rows::new(net.nodes, order.rank.iter().copied());
     let mut follows: Vec<(u32, u32)> = Vec::new();
     // For each event of Nature's what should have come before; her own beginning has in any case.
     let mut behind: Vec<Vec<u32>> = vec![Vec::new(); net.nodes as usize];
+    let mut before = Vec::new();
     for (later, earlier) in written {
-        let moment = moments.of(rank[earlier as usize]).iter();
-        let before: Vec<u32> =
-            moment.flat_map(|&at| behind[at as usize].iter().copied().chain([at])).collect();
+        before.clear();
+        for &at in moments.of(order.rank[earlier as usize]) {
+            before.extend_from_slice(&behind[at as usize]);
+            before.push(at);
+        }
         if natures(later) {
-            let ours = before.into_iter().filter(|&at| !natures(at) && at != activation[later as usize]);
+            let ours = before.iter().filter(|&&at| !natures(at) && at != activation[later as usize]);
             behind[later as usize].extend(ours);
         } else {
-            follows.extend(before.into_iter().filter(|&at| !held(later, at)).map(|at| (later, at)));
+            follows.extend(before.iter().filter(|&&at| !held(later, at)).map(|&at| (later, at)));
         }
     }
     follows.sort_unstable();
     follows.dedup();
     follows
+}
+
+/// The order of the nodes of a network: by time, and within one moment by what is written.
+struct Order<'a> {
+    rank: &'a [u32],
+    rigid: &'a Rigid,
+    potential: &'a [i64],
+}
+
+impl Order<'_> {
+    /// Less for what must come before. An edge from a later node to an earlier one is no longer than 0, so no potential of a
+    /// later node is more than that of an earlier one.
+    fn key(&self, node: u32) -> (Reverse<i64>, u32) {
+        (Reverse(self.potential[node as usize]), self.rank[node as usize])
+    }
+
+    /// True if two nodes are written to be one moment.
+    fn is_same(&self, a: u32, b: u32) -> bool {
+        self.rank[a as usize] == self.rank[b as usize]
+    }
 }
 
 /// All that follows from a controllable network, with what is in it: nothing else is to be kept in an execution.

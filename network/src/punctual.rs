@@ -12,7 +12,6 @@ use crate::controllability::{negative_cycle, solve};
 use crate::dispatchable::Rigid;
 use crate::merge::{Merged, merge};
 use crate::model::{EventId, Network};
-use crate::precedence;
 use crate::reduce::{ReduceError, Reduction, Source, reduce};
 use crate::stnu::{Edge, NONE, TooLarge, add};
 use crate::time::{Bound, Duration};
@@ -64,8 +63,7 @@ pub fn punctual(network: &Network) -> Result<Option<Punctuality>, TooLarge> {
     let Some(solution) = solve(stnu)? else { return Ok(None) };
     let mut edges = stnu.edges.clone();
     edges.extend(solution.derived);
-    let rank = precedence::ranks(stnu.nodes, &precedence::written(stnu), |node| node);
-    let rigid = Rigid::new(stnu, &edges, &solution.potential, &rank);
+    let rigid = Rigid::new(stnu, &edges, &solution.potential);
     let mut by_leader: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
     for node in 0..stnu.nodes {
         by_leader.entry(rigid.leader[node as usize]).or_default().push(node);

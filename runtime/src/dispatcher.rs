@@ -122,6 +122,8 @@ pub struct Missed {
 pub struct Dispatcher {
     network: Arc<Network>,
     settings: Settings,
+    /// For each event its place among those of one time.
+    order: Arc<[u32]>,
     /// For each event: does somebody carry it out?
     carried_out: Vec<bool>,
     reduction: Reduction,
@@ -162,7 +164,7 @@ impl Dispatcher {
 
     /// Nothing of the plan is executed yet, not even its origin.
     fn following(plan: Plan, settings: Settings, knowledge: Knowledge) -> Dispatcher {
-        let Plan { network, reduction, net } = plan;
+        let Plan { network, reduction, net, order } = plan;
         let mut carried_out = vec![false; network.events().len()];
         for event in &settings.carried_out {
             carried_out[event.index()] = true;
@@ -170,6 +172,7 @@ impl Dispatcher {
         Dispatcher {
             agenda: agenda(&reduction, &net, |event| settings.lead_of(carried_out[event.index()])),
             settings,
+            order,
             carried_out,
             reduction,
             active: Vec::new(),
@@ -193,6 +196,11 @@ impl Dispatcher {
     /// The network that is executed.
     pub fn network(&self) -> &Network {
         &self.network
+    }
+
+    /// The place of an event among those of one time in a record.
+    pub(crate) fn order(&self, event: EventId) -> u32 {
+        self.order[event.index()]
     }
 
     /// The latest time that anything was done.

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use kirk_network::merge::merge;
+use kirk_network::precedence::precedence;
 use kirk_network::reduce::{Progress, ReduceError, Reduction, reduce, reduce_rest};
 use kirk_network::stnu::TooLarge;
 use kirk_network::{Conflict, Dispatchable, Network, Verdict, check, dispatchable};
@@ -13,6 +14,12 @@ pub struct Plan {
     pub(crate) network: Arc<Network>,
     pub(crate) reduction: Reduction,
     pub(crate) net: Dispatchable,
+    pub(crate) order: Arc<[u32]>,
+}
+
+/// What at one time comes first in a record: what must not come after it.
+pub(crate) fn order(network: &Network) -> Arc<[u32]> {
+    precedence(network, |event| event.index() as u32).into()
 }
 
 /// Why a network cannot be executed.
@@ -35,7 +42,9 @@ impl Plan {
     pub fn new(network: &Network) -> Result<Plan, NoPlan> {
         let merged = merge(network).network;
         match compile(reduce(&merged)) {
-            Ok(Some((reduction, net))) => Ok(Plan { network: Arc::new(merged), reduction, net }),
+            Ok(Some((reduction, net))) => {
+                Ok(Plan { order: order(&merged), network: Arc::new(merged), reduction, net })
+            }
             // The check has the last word on both, so that a plan is refused exactly where it says so.
             Ok(None) | Err(TooLarge) => match check(network)? {
                 Verdict::Uncontrollable(conflict) => Err(NoPlan::Uncontrollable(conflict)),

@@ -1,7 +1,6 @@
 //! From a dispatcher to the record of its execution.
 
 use kirk_network::json::Seconds;
-use kirk_network::precedence::precedence;
 use kirk_network::{Duration, EventId, Network, Time};
 
 use crate::dispatcher::{Dispatcher, Missed};
@@ -21,13 +20,12 @@ pub(crate) fn record(
         let known = dispatcher.known(event);
         if known.fixed.is_some() { known.sequence } else { u32::MAX }
     };
-    let rank = precedence(network, sequence);
     let mut rows: Vec<((i64, u32, u32), Row)> = Vec::new();
     let all_happened = dispatcher.happened_by(end);
     for event in network.event_ids() {
         let truth = truth.get(event.index()).copied().flatten();
         let Some((time, row)) = row(dispatcher, event, all_happened[event.index()], truth) else { continue };
-        let place = (time, rank[event.index()], sequence(event));
+        let place = (time, dispatcher.order(event), sequence(event));
         for name in &network.events()[event.index()].names {
             if internal || !name.internal {
                 rows.push((place, Row { event: name.text.clone(), ..row.clone() }));

@@ -16,8 +16,8 @@ pub(crate) struct Rigid {
 }
 
 impl Rigid {
-    /// The groups of these edges; the potentials must fit. Of the nodes that could lead a group that of the least rank does.
-    pub(crate) fn new(stnu: &Stnu, edges: &[Edge], potential: &[i64], rank: &[u32]) -> Rigid {
+    /// The groups of these edges; the potentials must fit.
+    pub(crate) fn new(stnu: &Stnu, edges: &[Edge], potential: &[i64]) -> Rigid {
         // On a cycle of weight 0 every edge is tight, and every cycle of tight edges has weight 0.
         let tight = edges
             .iter()
@@ -34,9 +34,8 @@ impl Rigid {
         for group in kosaraju_scc(&graph) {
             let nodes = group.iter().map(|node| node.index());
             // t_v - t_leader = potential(leader) - potential(v). A contingent event leads before what is simultaneous.
-            let leader = nodes
-                .clone()
-                .max_by_key(|&node| (potential[node], ending[node] != NONE, Reverse((rank[node], node))));
+            let leader =
+                nodes.clone().max_by_key(|&node| (potential[node], ending[node] != NONE, Reverse(node)));
             let Some(leader) = leader else { continue };
             for node in nodes {
                 rigid.leader[node] = leader as u32;
@@ -44,6 +43,27 @@ impl Rigid {
             }
         }
         rigid
+    }
+
+    /// True if two nodes always come at the same time.
+    pub(super) fn is_one_moment(&self, a: u32, b: u32) -> bool {
+        let at = |node: u32| (self.leader[node as usize], self.offset[node as usize]);
+        at(a) == at(b)
+    }
+
+    /// Of the nodes that could lead a group, one of Nature's still does, else that of the least rank.
+    pub(super) fn lead_by(&mut self, rank: &[u32], stnu: &Stnu) {
+        let ending = stnu.link_ending_at();
+        let mut first: Vec<u32> = (0..stnu.nodes).collect();
+        for node in 0..stnu.nodes {
+            let leader = self.leader[node as usize];
+            if self.offset[node as usize] == 0 && ending[leader as usize] == NONE {
+                let first = &mut first[leader as usize];
+                let less = (rank[node as usize], node) < (rank[*first as usize], *first);
+                *first = if less { node } else { *first };
+            }
+        }
+        self.leader.iter_mut().for_each(|leader| *leader = first[*leader as usize]);
     }
 
     /// True if a node is the leader of its group, as are nodes that are alone.

@@ -7,7 +7,7 @@ use kirk_network::{EventId, Network, Time};
 use super::{Dispatcher, Settings, agenda};
 use crate::execution::How;
 use crate::knowledge::Knowledge;
-use crate::plan::Plan;
+use crate::plan::{Plan, order};
 use crate::rebuild::{Rebuild, Rebuilt};
 
 /// What became of a new plan.
@@ -92,7 +92,7 @@ impl Dispatcher {
         let known = knowledge.progress(network);
         let rebuilt = Rebuild::new(Arc::clone(network), planned, known, version).run();
         let (reduction, net) = rebuilt.plan?;
-        let plan = Plan { network: Arc::clone(network), reduction, net };
+        let plan = Plan { order: order(network), network: Arc::clone(network), reduction, net };
         let mut dispatcher = Dispatcher::following(plan, settings, knowledge);
         dispatcher.version = version;
         dispatcher.take_up(planned.as_micros());

@@ -1,19 +1,26 @@
-//! How late are dispatches in real time? At rest, with a journal, and while news pours in at 10,000 posts a second.
+//! How late are dispatches in real time? At rest, with a journal, while news pours in at 10,000 posts a second, and while all
+//! news is early and planned with, in a mission whose parts wait for one another.
 //!
 //! `cargo bench --bench lateness`: a mission of 500 activities, one every 10 ms, handed over to a child process that confirms
-//! at once. Needs `sed`; takes half a minute.
+//! at once; then four rovers with 2,000 events, or as many as an argument says, faster than real time. Needs `sed`; takes a minute.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a benchmark may panic, and prints")]
 
+mod work;
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 use std::io::{BufRead, BufReader, Write};
 use std::net::{SocketAddr, TcpStream};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use kirk_executive::{Driver, Ended, Http, Mission, Options, begin};
-use kirk_network::json;
-use kirk_runtime::{Outcome, Plan, Scope, handovers};
+use kirk_executive::{Driver, Ended, Happening, Http, Mission, Options, begin};
+use kirk_network::{EventId, Time, json};
+use kirk_runtime::nature::Nature;
+use kirk_runtime::{How, Outcome, Plan, Scope, Temper, handovers};
+use work::{Family, Repeaters};
 
 const ACTIVITIES: usize = 500;
 const POSTS_PER_SECOND: u64 = 10_000;
@@ -34,7 +41,75 @@ fn main() {
         let at = |percent| ended.lateness.percentile(percent).unwrap().as_micros() as f64 / 1000.0;
         println!("| {name} | {:.2} | {:.2} | {:.2} | {posts} |", at(50), at(99), at(100));
     }
+    let events = std::env::args().filter_map(|argument| argument.parse().ok()).next().unwrap_or(2000);
+    for (name, journal) in
+        [("while all news is early", false), ("while all news is early, with a journal", true)]
+    {
+        let ended = early(events, journal);
+        let at = |percent| ended.lateness.percentile(percent).unwrap().as_micros() as f64 / 1000.0 / SPEED;
+        let outcome = ended.execution.failure.map_or("completed".to_string(), |failure| failure.reason);
+        let count = ended.lateness.count();
+        println!(
+            "| {name} ({count} dispatches, {outcome}) | {:.2} | {:.2} | {:.2} | |",
+            at(50),
+            at(99),
+            at(100)
+        );
+    }
 }
+
+/// How many times faster than real time the rovers are.
+const SPEED: f64 = 100.0;
+
+/// Four rovers who wait for one another; Nature takes the least, and whatever happens is heard as soon as it can be.
+fn early(events: u32, journal: bool) -> Ended {
+    let network = Repeaters::network(events);
+    let plan = Plan::new(&network).unwrap();
+    let handovers = handovers(plan.network(), None, Scope::All);
+    let merged = plan.network().clone();
+    let mission = Mission { program: "early".into(), network, plan, handovers };
+    let options = Options { driver: Some(Driver::Stdio(CONFIRM.into())), speed: SPEED, ..Options::default() };
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("journal");
+    let ready =
+        begin(mission, options, journal.then_some(file.as_path()), std::sync::mpsc::channel().0).unwrap();
+    let desk = ready.desk();
+    let mut happenings = desk.listen();
+    let nature = std::thread::spawn(move || {
+        let mut nature = Nature::new(&merged, Temper::Lower, 0, &[]);
+        let mut coming: BinaryHeap<Reverse<(Time, EventId)>> = BinaryHeap::new();
+        loop {
+            match happenings.try_recv().map(|happening| (*happening).clone()) {
+                Ok(Happening::Over { .. }) => return,
+                Ok(Happening::Fixed { rows, .. }) => {
+                    for row in rows.iter().filter(|row| row.how == How::Dispatched) {
+                        let (event, time) = (merged.find(&row.event).unwrap(), row.time.unwrap().0);
+                        let deeds = nature.begin(event, Time::from_micros(time.as_micros())).unwrap();
+                        coming.extend(
+                            deeds.into_iter().filter_map(|deed| Some(Reverse((deed.news?, deed.event)))),
+                        );
+                    }
+                    continue;
+                }
+                Ok(_) => continue,
+                Err(_) => {}
+            }
+            while let Some(Reverse((_, event))) =
+                coming.peek().copied().filter(|Reverse((at, _))| *at <= desk.clock().now())
+            {
+                coming.pop();
+                desk.news(vec![merged.id(event).to_string()], Box::new(|_| {}));
+            }
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    });
+    let ended = ready.run(false);
+    nature.join().unwrap();
+    ended
+}
+
+/// Confirms at once whatever is handed over.
+const CONFIRM: &str = r#"sed -u -n 's/.*"id":"\([^"]*\)".*/{"executed": "\1"}/p'"#;
 
 /// One after the other; each has a contingent event beside it, so that there is news of use.
 fn network() -> String {
@@ -61,9 +136,8 @@ fn execute(journal: bool, flood: bool) -> (Ended, u64) {
     let plan = Plan::new(&network).unwrap();
     let handovers = handovers(plan.network(), None, Scope::Starts);
     let mission = Mission { program: "lateness".into(), network, plan, handovers };
-    let confirm = r#"sed -u -n 's/.*"id":"\([^"]*\)".*/{"executed": "\1"}/p'"#;
     let options = Options {
-        driver: Some(Driver::Stdio(confirm.into())),
+        driver: Some(Driver::Stdio(CONFIRM.into())),
         http: Some(Http { bind: "127.0.0.1".into(), port: 0, token_file: None }),
         ..Options::default()
     };

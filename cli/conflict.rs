@@ -14,9 +14,8 @@ pub(crate) fn diagnostic(conflict: &Conflict, network: &Network, input: &Input) 
     match input.origins() {
         Some((origins, program)) => explain_conflict(conflict, network, origins, *program),
         None => {
-            let missing = -conflict.total;
             let message = format!(
-                "`{}` cannot be executed in every case: {missing} s are missing between these bounds",
+                "`{}` cannot be executed in every case: these bounds do not go together",
                 network.name()
             );
             let place = |part: Part| {
@@ -28,7 +27,7 @@ pub(crate) fn diagnostic(conflict: &Conflict, network: &Network, input: &Input) 
             let (span, primary) = told
                 .next()
                 .map_or((Span::default(), String::new()), |(span, share)| (span, sentence(share, network)));
-            let mut help = format!("These do not go together: {} < 0.", total(conflict));
+            let mut help = format!("The time they leave: {} < 0.", total(conflict));
             if conflict.conservative {
                 help.push_str(
                     " This rests on a chain of links with late news, where kirk is careful: there might be a way.",

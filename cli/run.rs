@@ -5,7 +5,7 @@ use std::io;
 
 use kirk_compiler::{Code, Diagnostic, Severity, Source, Span};
 use kirk_network::json::{ReadProblem, Seconds, locate};
-use kirk_network::{Conflict, Duration, EventId, Network, Time};
+use kirk_network::{Duration, EventId, Network, Time};
 use kirk_runtime::execution::FORMAT;
 use kirk_runtime::{
     Execution, Failure, Impossible, NoPlan, Outcome, Plan, Simulation, Strategy, Temper, simulate,
@@ -48,9 +48,9 @@ pub(crate) fn run(arguments: &Run, common: &Common) -> io::Result<Status> {
     Reporter::new(&input.sources).show(&shown, common)?;
     let plan = match plan {
         None => return Ok(Status::Wrong),
-        Some(Err(found)) => {
+        Some(Err(_)) => {
             if arguments.format == TextOrJson::Json {
-                print(&line(&not_executed(&found, &input.program(&arguments.selection)))?)?;
+                print(&line(&not_executed(&input.program(&arguments.selection)))?)?;
             }
             return Ok(Status::No);
         }
@@ -97,8 +97,7 @@ pub(crate) fn run(arguments: &Run, common: &Common) -> io::Result<Status> {
 }
 
 /// The record of a mission that was not started because it cannot be promised.
-fn not_executed(conflict: &Conflict, program: &str) -> Execution {
-    let missing = -conflict.total;
+fn not_executed(program: &str) -> Execution {
     Execution {
         format: FORMAT.to_string(),
         program: program.to_string(),
@@ -107,9 +106,8 @@ fn not_executed(conflict: &Conflict, program: &str) -> Execution {
             event: program.to_string(),
             time: Seconds(Duration::ZERO),
             reason: "not-controllable".to_string(),
-            detail: format!(
-                "there is no strategy that works in every case: {missing} s are missing between bounds that do not go together"
-            ),
+            detail: "there is no strategy that works in every case: some bounds do not go together"
+                .to_string(),
         }),
         makespan: Seconds(Duration::ZERO),
         seed: None,

@@ -311,7 +311,7 @@ fn the_same_mission_can_be_checked_under_other_delays() {
     }
     let never = kirk(&["check", file, "--delays", "never"]);
     assert!(
-        stderr(&never).contains("1 s are missing between these bounds if no news ever comes"),
+        stderr(&never).contains("these bounds do not go together if no news ever comes"),
         "{}",
         stderr(&never)
     );
@@ -502,7 +502,7 @@ fn a_conflict_points_at_the_elements_of_a_network_file() {
     assert_eq!(conflict["code"], "K0601");
     assert_eq!(conflict["span"]["start"]["line"], 4);
     assert_eq!(conflict["labels"][1]["span"]["start"]["line"], 3);
-    assert_eq!(conflict["help"], "These do not go together: 3 - 5 = -2 < 0.");
+    assert_eq!(conflict["help"], "The time they leave: 3 - 5 = -2 < 0.");
 }
 
 #[test]

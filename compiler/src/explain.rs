@@ -27,10 +27,8 @@ pub fn explain_conflict(
     origins: &Origins,
     program: Span,
 ) -> Diagnostic {
-    let missing = -conflict.total;
     let name = network.name();
-    let message =
-        format!("`{name}` cannot be executed in every case: {missing} s are missing between these bounds");
+    let message = format!("`{name}` cannot be executed in every case: these bounds do not go together");
     let mut problem = Diagnostic::error(Code::NotControllable, program, message)
         .primary("there is no way to execute this that works whatever happens");
     let mut places: Vec<(Span, Vec<String>)> = Vec::new();
@@ -54,7 +52,7 @@ pub fn explain_conflict(
 
 /// The sum, and what to change.
 fn advice(conflict: &Conflict, network: &Network, origins: &Origins) -> String {
-    let mut text = format!("These do not go together: {} < 0.", total(conflict));
+    let mut text = format!("The time they leave: {} < 0.", total(conflict));
     let has = |wanted: &dyn Fn(Part) -> bool| conflict.members.iter().any(|share| wanted(share.part));
     let late = has(&|part| matches!(part, Part::DelayMax(_)));
     let joined = has(&|part| match part {

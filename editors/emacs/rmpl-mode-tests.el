@@ -119,7 +119,7 @@
         (should (eglot-current-server))
         ;; What kirk says is shown.
         (let ((found (car (rmpl-tests-wait "the error" (lambda () (flymake-start) (flymake-diagnostics))))))
-          (should (string-match-p "`main` cannot be executed in every case: 5 s are missing between these bounds"
+          (should (string-match-p "`main` cannot be executed in every case: these bounds do not go together"
                                   (flymake-diagnostic-text found)))
           (should (equal (line-number-at-pos (flymake-diagnostic-beg found)) 21)))
         ;; A program is renamed wherever it is named.

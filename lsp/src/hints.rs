@@ -99,10 +99,7 @@ pub fn lenses(view: &View) -> Vec<Lens> {
 fn verdict(mission: &Mission) -> String {
     let network = &mission.plan.network;
     match &mission.verdict {
-        Judgement::Uncontrollable(conflict) => {
-            let missing = -conflict.total;
-            format!("not controllable: {missing} s are missing between bounds that do not go together")
-        }
+        Judgement::Uncontrollable(_) => "not controllable: some bounds do not go together".to_string(),
         Judgement::TooLarge => "no verdict: the durations add up to too much".to_string(),
         Judgement::Controllable => {
             let end = mission.occurrences.first().and_then(|root| mission.window(root.end));

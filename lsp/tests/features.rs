@@ -517,7 +517,7 @@ fn a_file_of_several_missions_has_a_verdict_for_each() {
         titles,
         [
             "controllable: whatever happens, takes 5 s, 0 contingent durations",
-            "not controllable: 2 s are missing between bounds that do not go together"
+            "not controllable: some bounds do not go together"
         ]
     );
 }

@@ -5,6 +5,7 @@ use std::io;
 use kirk_compiler::{Severity, to_sexpr};
 use kirk_network::dispatchable::dispatchable;
 use kirk_network::merge::merge;
+use kirk_network::precedence::Precedence;
 use kirk_network::reduce::{ReduceError, reduce};
 use kirk_network::{Network, graphml, json, text};
 use serde::Serialize;
@@ -70,7 +71,7 @@ fn emit(arguments: &Compile, input: &mut Input) -> Result<String, Refusal> {
     if arguments.emit == Stage::Reduced {
         return emit_network(&reduction.to_network(&merged), arguments);
     }
-    let net = match dispatchable(&reduction.stnu) {
+    let net = match dispatchable(&reduction, &Precedence::new(&merged)) {
         Ok(Some(net)) => net,
         Ok(None) => {
             judge(input);

@@ -12,6 +12,7 @@ use kirk_network::generate::{
     repeaters, sampling,
 };
 use kirk_network::merge::merge;
+use kirk_network::precedence::Precedence;
 use kirk_network::reduce::{Progress, reduce, reduce_rest};
 use kirk_network::{Dispatchable, Network, Time, dispatchable, json};
 use kirk_runtime::{Execution, Plan, Simulation, Strategy, Temper, simulate};
@@ -102,8 +103,8 @@ pub fn decide(network: &Network) -> bool {
 
 /// From a network to its dispatchable form.
 pub fn compile(network: &Network) -> Dispatchable {
-    let reduction = reduce(&merge(network).network).unwrap();
-    dispatchable(&reduction.stnu).unwrap().unwrap()
+    let merged = merge(network).network;
+    dispatchable(&reduce(&merged).unwrap(), &Precedence::new(&merged)).unwrap().unwrap()
 }
 
 /// A whole execution, with a random Nature.
@@ -142,5 +143,5 @@ pub fn halfway(plan: &Plan) -> Progress {
 /// The plan of what is left, as after news that came early.
 pub fn rebuild(plan: &Plan, progress: &Progress) -> Dispatchable {
     let reduction = reduce_rest(plan.network(), progress).unwrap();
-    dispatchable(&reduction.stnu).unwrap().unwrap()
+    dispatchable(&reduction, plan.precedence()).unwrap().unwrap()
 }

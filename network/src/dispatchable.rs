@@ -11,13 +11,14 @@
 mod implied;
 mod rigid;
 
-use std::cmp::Reverse;
 use std::collections::VecDeque;
 
 use crate::controllability::{Solution, Wait, solve};
 use crate::hierarchy::{Hierarchy, Path};
-use crate::precedence;
-use crate::stnu::{Edge, Link, NONE, Rows, Stnu, TooLarge};
+use crate::model::EventId;
+use crate::precedence::Precedence;
+use crate::reduce::Reduction;
+use crate::stnu::{Edge, Link, Rows, Stnu, TooLarge};
 use implied::implied_by_links;
 pub(crate) use rigid::Rigid;
 
@@ -38,8 +39,8 @@ pub struct Dispatchable {
     pub waits: Vec<Wait>,
     /// For each node the node at whose time it is always executed, and after which; [`crate::stnu::NONE`] for most.
     pub simultaneous: Vec<u32>,
-    /// Pairs (later, earlier), where no edge holds the later one: as it is written it must not come before the other, so it is
-    /// not begun before the other is done, even where their times may be equal or keep them apart.
+    /// Pairs (later, earlier), where no edge holds the later one: it is not begun before the other is done, even where their
+    /// times may be equal or keep them apart ([`Precedence`]).
     pub follows: Vec<(u32, u32)>,
 }
 
@@ -58,20 +59,16 @@ impl Dispatchable {
 ///
 /// # Errors
 /// [`TooLarge`] if the durations add up to more than 64-bit microseconds can hold.
-pub fn dispatchable(stnu: &Stnu) -> Result<Option<Dispatchable>, TooLarge> {
+pub fn dispatchable(
+    reduction: &Reduction,
+    precedence: &Precedence,
+) -> Result<Option<Dispatchable>, TooLarge> {
+    let stnu = &reduction.stnu;
     let Some(Consequences { mut edges, waits, potential }) = consequences(stnu)? else { return Ok(None) };
     let mut rigid = Rigid::new(stnu, &edges, &potential);
-    let written = precedence::written(stnu);
-    // What is written round a cycle is one moment; everything else is in order by its times.
-    let mut moments = written.clone();
-    moments.retain(|&(later, earlier)| rigid.is_one_moment(later, earlier));
-    let rank = match moments.is_empty() {
-        true => (0..stnu.nodes).collect(),
-        false => precedence::ranks(stnu.nodes, &moments, |node| node),
-    };
-    if !moments.is_empty() {
-        rigid.lead_by(&rank, stnu);
-    }
+    // The origin is executed first.
+    let rank = |node: u32| (node != 0, precedence.rank[reduction.event_of[node as usize].index()]);
+    rigid.lead_by(rank, stnu);
     // What Nature keeps by herself helps to make other edges needless, and is needless itself.
     let nature = rigid.contracted(&nature_keeps(stnu));
     edges.extend(nature_keeps(stnu));
@@ -96,71 +93,22 @@ pub fn dispatchable(stnu: &Stnu) -> Result<Option<Dispatchable>, TooLarge> {
         simultaneous: rigid.simultaneous(),
         follows: Vec::new(),
     };
-    let order = Order { rank: &rank, rigid: &rigid, potential: &potential };
-    net.follows = follows(&net, written, &order);
+    net.follows = follows(&net, reduction, precedence);
     Ok(Some(net))
 }
 
-/// Of all that is written to follow, what no edge holds. Nature cannot be held: what follows an event of hers follows what
-/// should have come before that too.
+/// Of all that follows, what no edge holds. What has been executed has not to be waited for.
 ///
 /// Nothing waits for itself in the end: round a cycle of holds the distances add up to 0 at most, so they are 0 and all its
-/// nodes simultaneous; and among those the leader is of the least rank, and ranks order what is written.
-fn follows(net: &Dispatchable, mut written: Vec<(u32, u32)>, order: &Order<'_>) -> Vec<(u32, u32)> {
-    let mut activation = vec![NONE; net.nodes as usize];
-    net.links.iter().for_each(|link| activation[link.contingent as usize] = link.activation);
-    let natures = |node: u32| activation[node as usize] != NONE;
+/// nodes simultaneous; and among those the leader is of the least rank, and ranks order what follows.
+fn follows(net: &Dispatchable, reduction: &Reduction, precedence: &Precedence) -> Vec<(u32, u32)> {
     let held = |later: u32, earlier: u32| {
         let known = net.edges.binary_search_by_key(&(later, earlier), |edge| (edge.from, edge.to));
         known.is_ok_and(|at| net.holds(&net.edges[at]))
     };
-    // What is time zero by definition has not to be waited for.
-    written
-        .retain(|&(later, earlier)| !order.rigid.is_one_moment(earlier, 0) && !order.is_same(later, earlier));
-    written.sort_unstable_by_key(|&(later, earlier)| (order.key(later), later, earlier));
-    written.dedup();
-    // What follows an event follows all that are one moment with it by what is written.
-    let moments = Rows::new(net.nodes, order.rank.iter().copied());
-    let mut follows: Vec<(u32, u32)> = Vec::new();
-    // For each event of Nature's what should have come before; her own beginning has in any case.
-    let mut behind: Vec<Vec<u32>> = vec![Vec::new(); net.nodes as usize];
-    let mut before = Vec::new();
-    for (later, earlier) in written {
-        before.clear();
-        for &at in moments.of(order.rank[earlier as usize]) {
-            before.extend_from_slice(&behind[at as usize]);
-            before.push(at);
-        }
-        if natures(later) {
-            let ours = before.iter().filter(|&&at| !natures(at) && at != activation[later as usize]);
-            behind[later as usize].extend(ours);
-        } else {
-            follows.extend(before.iter().filter(|&&at| !held(later, at)).map(|&at| (later, at)));
-        }
-    }
-    follows.sort_unstable();
-    follows.dedup();
-    follows
-}
-
-/// The order of the nodes of a network: by time, and within one moment by what is written.
-struct Order<'a> {
-    rank: &'a [u32],
-    rigid: &'a Rigid,
-    potential: &'a [i64],
-}
-
-impl Order<'_> {
-    /// Less for what must come before. An edge from a later node to an earlier one is no longer than 0, so no potential of a
-    /// later node is more than that of an earlier one.
-    fn key(&self, node: u32) -> (Reverse<i64>, u32) {
-        (Reverse(self.potential[node as usize]), self.rank[node as usize])
-    }
-
-    /// True if two nodes are written to be one moment.
-    fn is_same(&self, a: u32, b: u32) -> bool {
-        self.rank[a as usize] == self.rank[b as usize]
-    }
+    let node = |event: EventId| reduction.places[event.index()].node;
+    let pairs = precedence.follows.iter().map(|&(later, earlier)| (node(later), node(earlier)));
+    pairs.filter(|&(later, earlier)| later != 0 && earlier != 0 && !held(later, earlier)).collect()
 }
 
 /// All that follows from a controllable network, with what is in it: nothing else is to be kept in an execution.

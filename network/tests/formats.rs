@@ -10,6 +10,7 @@ use std::path::Path;
 use insta::assert_snapshot;
 use kirk_network::graphml::WriteError;
 use kirk_network::json::ReadProblem;
+use kirk_network::precedence::Precedence;
 use kirk_network::{
     Bound, ContingentLink, Delay, Duration, Event, EventId, Name, Network, Requirement, dispatchable, dot,
     graphml, json, plain, reduce,
@@ -677,7 +678,7 @@ fn a_dispatchable_network_is_drawn() {
     let text = "# Time-Point Names\nZ A C X\n# Ordinary Edges\nZ 20 A\nA 0 Z\nX 1 C\nC 6 X\nX 0 Z\n# Contingent Links\nA 2 9 C\n";
     let network = plain::read(text).unwrap();
     let reduction = reduce::reduce(&network).unwrap();
-    let form = dispatchable::dispatchable(&reduction.stnu).unwrap().unwrap();
+    let form = dispatchable::dispatchable(&reduction, &Precedence::new(&network)).unwrap().unwrap();
     let name = |node: u32| network.label(reduction.event_of[node as usize]).to_string();
     assert_snapshot!(dot::dispatchable(&form, name), @r#"
     digraph "dispatchable" {

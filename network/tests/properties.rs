@@ -12,7 +12,8 @@ use std::time::Instant;
 use kirk_network::check::conflict;
 use kirk_network::controllability::{is_controllable, negative_cycle};
 use kirk_network::merge::merge;
-use kirk_network::reduce::{ReduceError, Reduction, reduce};
+use kirk_network::precedence::Precedence;
+use kirk_network::reduce::{ReduceError, reduce};
 use kirk_network::stnu::{LIMIT, TooLarge};
 use kirk_network::{
     Bound, Conflict, ContingentLink, Delay, Duration, Event, EventId, Name, Network, Part, Requirement,
@@ -56,10 +57,11 @@ fn without_delays_the_verdict_is_that_of_the_labelled_closure() {
 fn deciding_explaining_and_solving_agree() {
     let shapes = [Shape::tiny_delayed(), Shape::medium(), Shape::medium().chained()];
     holds(4000, &shapes, |network, _| match reduce(&merge(network).network) {
-        Ok(Reduction { stnu, .. }) => {
-            let decided = is_controllable(&stnu).unwrap();
-            decided == negative_cycle(&stnu).unwrap().is_none()
-                && decided == dispatchable(&stnu).unwrap().is_some()
+        Ok(reduction) => {
+            let decided = is_controllable(&reduction.stnu).unwrap();
+            decided == negative_cycle(&reduction.stnu).unwrap().is_none()
+                && decided
+                    == dispatchable(&reduction, &Precedence::new(&merge(network).network)).unwrap().is_some()
         }
         Err(_) => !controllable(network),
     });
@@ -76,7 +78,9 @@ fn deciding_and_compiling_refuse_the_same_networks_as_too_large() {
         let large = random::scaled(network, factor);
         let verdict = check(&large).map(|verdict| verdict == Verdict::Controllable);
         let compiled = match reduce(&merge(&large).network) {
-            Ok(Reduction { stnu, .. }) => dispatchable(&stnu).map(|form| form.is_some()),
+            Ok(reduction) => {
+                dispatchable(&reduction, &Precedence::new(&merge(&large).network)).map(|form| form.is_some())
+            }
             Err(ReduceError::TooLarge) => Err(TooLarge),
             Err(ReduceError::Never(_)) => Ok(false),
         };

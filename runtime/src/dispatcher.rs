@@ -29,6 +29,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use flight::InFlight;
+use kirk_network::precedence::Precedence;
 use kirk_network::reduce::Reduction;
 use kirk_network::stnu::{Link, Rows};
 use kirk_network::{Dispatchable, Duration, EventId, Network, Time};
@@ -122,8 +123,7 @@ pub struct Missed {
 pub struct Dispatcher {
     network: Arc<Network>,
     settings: Settings,
-    /// For each event its place among those of one time.
-    order: Arc<[u32]>,
+    precedence: Arc<Precedence>,
     /// For each event: does somebody carry it out?
     carried_out: Vec<bool>,
     reduction: Reduction,
@@ -164,7 +164,7 @@ impl Dispatcher {
 
     /// Nothing of the plan is executed yet, not even its origin.
     fn following(plan: Plan, settings: Settings, knowledge: Knowledge) -> Dispatcher {
-        let Plan { network, reduction, net, order } = plan;
+        let Plan { network, reduction, net, precedence } = plan;
         let mut carried_out = vec![false; network.events().len()];
         for event in &settings.carried_out {
             carried_out[event.index()] = true;
@@ -172,7 +172,7 @@ impl Dispatcher {
         Dispatcher {
             agenda: agenda(&reduction, &net, |event| settings.lead_of(carried_out[event.index()])),
             settings,
-            order,
+            precedence,
             carried_out,
             reduction,
             active: Vec::new(),
@@ -200,7 +200,7 @@ impl Dispatcher {
 
     /// The place of an event among those of one time in a record.
     pub(crate) fn order(&self, event: EventId) -> u32 {
-        self.order[event.index()]
+        self.precedence.order(event)
     }
 
     /// The latest time that anything was done.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use kirk_network::merge::merge;
-use kirk_network::precedence::precedence;
+use kirk_network::precedence::Precedence;
 use kirk_network::reduce::{Progress, ReduceError, Reduction, reduce, reduce_rest};
 use kirk_network::stnu::TooLarge;
 use kirk_network::{Conflict, Dispatchable, Network, Verdict, check, dispatchable};
@@ -14,12 +14,7 @@ pub struct Plan {
     pub(crate) network: Arc<Network>,
     pub(crate) reduction: Reduction,
     pub(crate) net: Dispatchable,
-    pub(crate) order: Arc<[u32]>,
-}
-
-/// What at one time comes first in a record: what must not come after it.
-pub(crate) fn order(network: &Network) -> Arc<[u32]> {
-    precedence(network, |event| event.index() as u32).into()
+    pub(crate) precedence: Arc<Precedence>,
 }
 
 /// Why a network cannot be executed.
@@ -41,16 +36,20 @@ impl Plan {
     /// Merges, reduces, proves and compiles a network.
     pub fn new(network: &Network) -> Result<Plan, NoPlan> {
         let merged = merge(network).network;
-        match compile(reduce(&merged)) {
-            Ok(Some((reduction, net))) => {
-                Ok(Plan { order: order(&merged), network: Arc::new(merged), reduction, net })
-            }
+        let precedence = Arc::new(Precedence::new(&merged));
+        match compile(reduce(&merged), &precedence) {
+            Ok(Some((reduction, net))) => Ok(Plan { network: Arc::new(merged), reduction, net, precedence }),
             // The check has the last word on both, so that a plan is refused exactly where it says so.
             Ok(None) | Err(TooLarge) => match check(network)? {
                 Verdict::Uncontrollable(conflict) => Err(NoPlan::Uncontrollable(conflict)),
                 Verdict::Controllable => unreachable!("a controllable network has a dispatchable form"),
             },
         }
+    }
+
+    /// What must not come before what in it.
+    pub fn precedence(&self) -> &Precedence {
+        &self.precedence
     }
 
     /// The merged network that is executed.
@@ -60,14 +59,21 @@ impl Plan {
 }
 
 /// The plan for what is left of an execution, `None` if there is none.
-pub(crate) fn rest(network: &Network, progress: &Progress) -> Option<(Reduction, Dispatchable)> {
-    compile(reduce_rest(network, progress)).ok().flatten()
+pub(crate) fn rest(
+    network: &Network,
+    precedence: &Precedence,
+    progress: &Progress,
+) -> Option<(Reduction, Dispatchable)> {
+    compile(reduce_rest(network, progress), precedence).ok().flatten()
 }
 
-fn compile(reduction: Result<Reduction, ReduceError>) -> Result<Option<(Reduction, Dispatchable)>, TooLarge> {
+fn compile(
+    reduction: Result<Reduction, ReduceError>,
+    precedence: &Precedence,
+) -> Result<Option<(Reduction, Dispatchable)>, TooLarge> {
     match reduction {
         Err(ReduceError::TooLarge) => Err(TooLarge),
         Err(ReduceError::Never(_)) => Ok(None),
-        Ok(reduction) => Ok(dispatchable(&reduction.stnu)?.map(|net| (reduction, net))),
+        Ok(reduction) => Ok(dispatchable(&reduction, precedence)?.map(|net| (reduction, net))),
     }
 }

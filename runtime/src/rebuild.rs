@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use kirk_network::precedence::Precedence;
 use kirk_network::reduce::{Progress, Reduction};
 use kirk_network::{Dispatchable, Network, Time};
 
@@ -11,6 +12,7 @@ use crate::plan::rest;
 #[derive(Clone, Debug)]
 pub struct Rebuild {
     network: Arc<Network>,
+    precedence: Arc<Precedence>,
     progress: Progress,
     version: u64,
 }
@@ -29,11 +31,12 @@ pub struct Rebuilt {
 impl Rebuild {
     pub(crate) fn new(
         network: Arc<Network>,
+        precedence: Arc<Precedence>,
         now: Time,
         known: Vec<Option<(Time, Time)>>,
         version: u64,
     ) -> Rebuild {
-        Rebuild { network, progress: Progress { now, known }, version }
+        Rebuild { network, precedence, progress: Progress { now, known }, version }
     }
 
     /// The time from which it is planned.
@@ -43,7 +46,11 @@ impl Rebuild {
 
     /// Does the work.
     pub fn run(self) -> Rebuilt {
-        Rebuilt { plan: rest(&self.network, &self.progress), now: self.progress.now, version: self.version }
+        Rebuilt {
+            plan: rest(&self.network, &self.precedence, &self.progress),
+            now: self.progress.now,
+            version: self.version,
+        }
     }
 
     /// What is left when it is known that there is no plan.

@@ -238,6 +238,68 @@ fn what_follows_at_no_distance_waits_for_the_confirmation_and_a_failed_attempt_i
     assert_eq!(verify(executive.network(), &execution), []);
 }
 
+#[test]
+fn what_follows_natures_end_waits_for_what_had_to_come_before_it() {
+    // Nobody knows when `n` will be, so `before` is done when it is, and `after` at the same time.
+    let mut executive = executive_of(
+        r#"{"format": "kirk-network/1", "origin": "z", "events": ["z", "after", "before", "n"],
+            "requirements": [{"from": "n", "to": "after", "lower": 0}, {"from": "before", "to": "n", "lower": 0, "upper": 1}],
+            "contingents": [{"from": "z", "to": "n", "lower": 0, "upper": 2}]}"#,
+        Scope::All,
+        0.0,
+    );
+    executive.handle_timeout(Time::ZERO);
+    executive.handle_sent(Time::ZERO, "run/z");
+    executive.handle_executed(Time::ZERO, "run/z", None);
+    let n = executive.network().find("n").unwrap();
+    executive.handle_news(millis(500), n);
+    executive.handle_timeout(millis(500));
+    assert_eq!(sends(&mut executive), ["z", "before"]);
+    executive.handle_sent(millis(500), "run/before");
+    executive.handle_executed(millis(600), "run/before", None);
+    executive.handle_timeout(millis(600));
+    assert_eq!(sends(&mut executive), ["after"]);
+}
+
+#[test]
+fn what_follows_an_end_that_nobody_waits_for_waits_for_what_had_to_come_before_it() {
+    // It takes exactly 3 s, so no news of it is needed.
+    let mut executive = executive_of(
+        r#"{"format": "kirk-network/1", "origin": "z", "events": ["z", "after", "before", "n"],
+            "requirements": [{"from": "n", "to": "after", "lower": 0}, {"from": "before", "to": "n", "lower": 0},
+                             {"from": "z", "to": "before", "lower": 3}],
+            "contingents": [{"from": "z", "to": "n", "lower": 3, "upper": 3}]}"#,
+        Scope::All,
+        0.0,
+    );
+    executive.handle_timeout(Time::ZERO);
+    executive.handle_sent(Time::ZERO, "run/z");
+    executive.handle_executed(Time::ZERO, "run/z", None);
+    executive.handle_timeout(second(3));
+    assert_eq!(sends(&mut executive), ["z", "before"]);
+    executive.handle_sent(second(3), "run/before");
+    executive.handle_executed(second(3), "run/before", None);
+    executive.handle_timeout(second(3));
+    assert_eq!(sends(&mut executive), ["after"]);
+}
+
+#[test]
+fn what_follows_an_event_that_has_to_be_at_time_zero_waits_for_it() {
+    let mut executive = executive_of(
+        r#"{"format": "kirk-network/1", "origin": "z", "events": ["z", "after", "first", "last"],
+            "requirements": [{"from": "first", "to": "last", "lower": 5}, {"from": "z", "to": "last", "upper": 5},
+                             {"from": "first", "to": "after", "lower": 0}]}"#,
+        Scope::All,
+        0.0,
+    );
+    executive.handle_timeout(Time::ZERO);
+    assert_eq!(sends(&mut executive), ["z", "first"]);
+    executive.handle_sent(Time::ZERO, "run/first");
+    executive.handle_executed(millis(0), "run/first", None);
+    executive.handle_timeout(millis(0));
+    assert_eq!(sends(&mut executive), ["after"]);
+}
+
 /// A pause of exactly 2 s, which is nobody's to execute, then `b`.
 const PAUSE: &str = r#"{"format": "kirk-network/1", "origin": "z", "events": ["z", "pause", "b:start", "b:end"],
     "requirements": [{"from": "z", "to": "pause", "lower": 2, "upper": 2},

@@ -45,21 +45,15 @@ impl Rigid {
         rigid
     }
 
-    /// True if two nodes always come at the same time.
-    pub(super) fn is_one_moment(&self, a: u32, b: u32) -> bool {
-        let at = |node: u32| (self.leader[node as usize], self.offset[node as usize]);
-        at(a) == at(b)
-    }
-
     /// Of the nodes that could lead a group, one of Nature's still does, else that of the least rank.
-    pub(super) fn lead_by(&mut self, rank: &[u32], stnu: &Stnu) {
+    pub(super) fn lead_by<R: Ord>(&mut self, rank: impl Fn(u32) -> R, stnu: &Stnu) {
         let ending = stnu.link_ending_at();
         let mut first: Vec<u32> = (0..stnu.nodes).collect();
         for node in 0..stnu.nodes {
             let leader = self.leader[node as usize];
             if self.offset[node as usize] == 0 && ending[leader as usize] == NONE {
                 let first = &mut first[leader as usize];
-                let less = (rank[node as usize], node) < (rank[*first as usize], *first);
+                let less = (rank(node), node) < (rank(*first), *first);
                 *first = if less { node } else { *first };
             }
         }

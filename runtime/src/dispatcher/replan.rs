@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
+use kirk_network::precedence::Precedence;
 use kirk_network::{EventId, Network, Time};
 
 use super::{Dispatcher, Settings, agenda};
 use crate::execution::How;
 use crate::knowledge::Knowledge;
-use crate::plan::{Plan, order};
+use crate::plan::Plan;
 use crate::rebuild::{Rebuild, Rebuilt};
 
 /// What became of a new plan.
@@ -72,7 +73,8 @@ impl Dispatcher {
     fn rebuild(&mut self, from: i64) -> Rebuild {
         let network = Arc::clone(&self.network);
         let known = self.knowledge.progress(&network);
-        Rebuild::new(network, Time::from_micros(from), known, self.version)
+        let precedence = Arc::clone(&self.precedence);
+        Rebuild::new(network, precedence, Time::from_micros(from), known, self.version)
     }
 
     /// The events of which something has become known since the last checkpoint. The time is not among what is known: it
@@ -90,9 +92,10 @@ impl Dispatcher {
         planned: Time,
     ) -> Option<Dispatcher> {
         let known = knowledge.progress(network);
-        let rebuilt = Rebuild::new(Arc::clone(network), planned, known, version).run();
-        let (reduction, net) = rebuilt.plan?;
-        let plan = Plan { order: order(network), network: Arc::clone(network), reduction, net };
+        let precedence = Arc::new(Precedence::new(network));
+        let rebuild = Rebuild::new(Arc::clone(network), Arc::clone(&precedence), planned, known, version);
+        let (reduction, net) = rebuild.run().plan?;
+        let plan = Plan { network: Arc::clone(network), reduction, net, precedence };
         let mut dispatcher = Dispatcher::following(plan, settings, knowledge);
         dispatcher.version = version;
         dispatcher.take_up(planned.as_micros());

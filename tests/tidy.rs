@@ -31,6 +31,7 @@ fn what_belongs_in_one_place_is_named_in_one_place() {
         ("pest", "compiler"),
         ("lexpr", "compiler"),
         ("petgraph", "network"),
+        ("strsim", "network"),
         ("lsp-server", "lsp"),
         ("lsp-types", "lsp"),
         ("clap", "."),

@@ -6,11 +6,12 @@ use serde::Deserialize;
 use serde::de::{Deserializer, MapAccess, Visitor};
 use serde_json::value::RawValue;
 
-use super::fields::{CONTINGENT, Content, REQUIREMENT, locate, nearest, problem};
+use super::fields::{CONTINGENT, Content, REQUIREMENT, locate, problem};
 use super::{FORMAT, ReadProblem};
 use crate::model::{
     ContingentLink, Delay, Event, EventId, ModelError, Name, Network, Requirement, normal_name,
 };
+use crate::nearest::nearest;
 use crate::source_map::SourceMap;
 use crate::time::{Bound, Duration};
 
@@ -228,8 +229,8 @@ impl<'a> Reader<'a> {
         let Ok(Fields(found)) = serde_json::from_str::<Fields<'a>>(raw.get()) else { return };
         for (index, (field, value)) in found.iter().enumerate() {
             let Some((known, content)) = fields.iter().find(|(known, _)| known == field) else {
-                let names: Vec<String> = fields.iter().map(|(known, _)| (*known).to_string()).collect();
-                let near = match nearest(field, names.iter()) {
+                let names: Vec<&str> = fields.iter().map(|(known, _)| *known).collect();
+                let near = match nearest(field, names.iter().copied()) {
                     Some(near) => format!("did you mean `{near}`?"),
                     None => format!("the fields are `{}`", names.join("`, `")),
                 };
@@ -357,7 +358,7 @@ impl<'a> Reader<'a> {
     fn find(&mut self, name: &str, element: &str, raw: &'a RawValue) -> Option<EventId> {
         let found = self.event_of.get(&normal_name(name)).copied();
         if found.is_none() {
-            let near = nearest(name, self.event_of.keys());
+            let near = nearest(name, self.event_of.keys().map(String::as_str));
             let help = near.map_or(String::new(), |near| format!("; did you mean `{near}`?"));
             self.problem(raw, format!("{element}: there is no event `{name}`{help}"));
         }

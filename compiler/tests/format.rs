@@ -164,13 +164,7 @@ fn body() -> impl Strategy<Value = String> {
 /// The text with other blanks: every run of blanks outside of strings and comments becomes another one. Blank lines and the
 /// lines of comments stay, because they say something.
 fn shake(text: &str, seed: u64) -> String {
-    let mut state = seed | 1;
-    let mut random = move |below: u64| {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        state % below
-    };
+    let mut random = fastrand::Rng::with_seed(seed);
     let mut shaken = String::new();
     let mut rest = text;
     while let Some(c) = rest.chars().next() {
@@ -190,7 +184,7 @@ fn shake(text: &str, seed: u64) -> String {
         let comment_before = shaken.rsplit('\n').next().is_some_and(|line| line.contains(';'));
         let comment_after = rest.starts_with(';');
         // A blank line says something in the examples wherever it is; `(` in the first column begins a definition.
-        shaken.push_str(match (blank, comment_before || comment_after, random(4)) {
+        shaken.push_str(match (blank, comment_before || comment_after, random.u8(..4)) {
             (true, _, 0) => "\n\n",
             (true, _, 1) => "\n   \n\n\t",
             (true, _, _) => " \n\n\n ",

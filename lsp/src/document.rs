@@ -158,16 +158,6 @@ mod tests {
     use super::*;
     use lsp_types::{Position, Range};
 
-    /// A small generator of numbers: the same on every machine.
-    struct Random(u64);
-
-    impl Random {
-        fn below(&mut self, limit: usize) -> usize {
-            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (self.0 >> 33) as usize % limit
-        }
-    }
-
     /// The position of a byte, found by walking there.
     fn position(text: &str, at: usize, encoding: Encoding) -> Position {
         let (mut line, mut character, mut was_return) = (0, 0, false);
@@ -187,7 +177,7 @@ mod tests {
     fn edits_piece_by_piece_give_the_text_the_editor_has() {
         const PIECES: [&str; 9] = ["", "(a", ")", "\n", "\r\n", "ö", "𝄞𝄞", "; x\n", "\r"];
         for seed in 0..300 {
-            let mut random = Random(seed);
+            let mut random = fastrand::Rng::with_seed(seed);
             let encoding = if seed % 2 == 0 { Encoding::Utf8 } else { Encoding::Utf16 };
             let mut text = "(define-control-program ö ()\r\n  𝄞)\n".to_string();
             let mut document = Document::new("file:///x".parse().unwrap(), 0, text.clone());
@@ -196,10 +186,10 @@ mod tests {
                 let is_place = |at: &usize| !(text[..*at].ends_with('\r') && text[*at..].starts_with('\n'));
                 let places: Vec<usize> =
                     text.char_indices().map(|(at, _)| at).chain([text.len()]).filter(is_place).collect();
-                let first = random.below(places.len());
-                let last = (first + random.below(6)).min(places.len() - 1);
+                let first = random.usize(..places.len());
+                let last = (first + random.usize(..6)).min(places.len() - 1);
                 let (start, end) = (places[first], places[last]);
-                let piece = PIECES[random.below(PIECES.len())].to_string();
+                let piece = PIECES[random.usize(..PIECES.len())].to_string();
                 let range =
                     Range { start: position(&text, start, encoding), end: position(&text, end, encoding) };
                 text.replace_range(start..end, &piece);

@@ -13,16 +13,6 @@ use kirk_lsp::{
     prepare_rename, references, rename, signature,
 };
 
-/// A small generator of numbers: the same on every machine.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, limit: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) as usize % limit
-    }
-}
-
 fn is_inside(text: &str, span: Span) {
     let (start, end) = (span.start as usize, span.end as usize);
     assert!(start <= end && text.is_char_boundary(start) && text.is_char_boundary(end), "{span:?}");
@@ -84,7 +74,7 @@ fn boundaries(text: &str) -> Vec<usize> {
 
 #[test]
 fn a_mission_typed_character_by_character_is_followed() {
-    let mut random = Random(1);
+    let mut random = fastrand::Rng::with_seed(1);
     let mut before = view("");
     for cut in boundaries(MISSION) {
         let text = &MISSION[..cut];
@@ -94,7 +84,7 @@ fn a_mission_typed_character_by_character_is_followed() {
                 ask_about_the_text(&view);
                 ask_at(&view, cut);
                 let places = boundaries(text);
-                ask_at(&view, places[random.below(places.len())]);
+                ask_at(&view, places[random.usize(..places.len())]);
             }
             if !now.missions.is_empty() {
                 before = now;
@@ -140,14 +130,14 @@ fn a_mission_that_is_torn_and_shuffled_is_followed() {
     ];
     let known: Vec<View> = sources.iter().map(|source| view(source)).collect();
     for seed in 0..cases {
-        let mut random = Random(seed);
-        let number = random.below(sources.len());
+        let mut random = fastrand::Rng::with_seed(seed);
+        let number = random.usize(..sources.len());
         let mut text = sources[number].to_string();
-        for _ in 0..=random.below(4) {
+        for _ in 0..=random.usize(..4) {
             let places = boundaries(&text);
-            let (a, b) = (places[random.below(places.len())], places[random.below(places.len())]);
+            let (a, b) = (places[random.usize(..places.len())], places[random.usize(..places.len())]);
             let (start, end) = (a.min(b), a.max(b));
-            match random.below(5) {
+            match random.usize(..5) {
                 // A short piece goes, or a long one, or comes twice, or moves to the front, or something strange comes.
                 0 => text.replace_range(
                     start..boundaries(&text).into_iter().find(|at| *at > start).unwrap_or(end),
@@ -158,7 +148,7 @@ fn a_mission_that_is_torn_and_shuffled_is_followed() {
                 3 => text = [&text[start..end], &text[..start], &text[end..]].concat(),
                 _ => text.insert_str(
                     start,
-                    ["(", ")", "\"", "#|", "|#", ";", "'", "𝄞", "\r", ":"][random.below(10)],
+                    ["(", ")", "\"", "#|", "|#", ";", "'", "𝄞", "\r", ":"][random.usize(..10)],
                 ),
             }
         }
@@ -166,7 +156,7 @@ fn a_mission_that_is_torn_and_shuffled_is_followed() {
             let places = boundaries(&text);
             for view in [view(&text), after(&known[number], &text)] {
                 ask_about_the_text(&view);
-                (0..5).for_each(|_| ask_at(&view, places[random.below(places.len())]));
+                (0..5).for_each(|_| ask_at(&view, places[random.usize(..places.len())]));
             }
         });
     }

@@ -286,24 +286,16 @@ mod tests {
     use super::{Hierarchy, Path};
     use crate::stnu::{Edge, LIMIT};
 
-    /// Pseudo-random numbers below a bound.
-    fn random(mut state: u64) -> impl FnMut(u64) -> u64 {
-        move |below| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 33) % below
-        }
-    }
-
     /// Edges that a random potential fits and that are on no cycle of weight 0: all are a little longer than need be.
     fn network(seed: u64) -> (Vec<Edge>, Vec<i64>) {
-        let mut random = random(seed);
-        let nodes = 2 + random(14);
-        let potential: Vec<i64> = (0..nodes).map(|_| -(random(40) as i64)).collect();
+        let mut random = fastrand::Rng::with_seed(seed);
+        let nodes = random.usize(2..16);
+        let potential: Vec<i64> = (0..nodes).map(|_| -random.i64(0..40)).collect();
         let mut edges = Vec::new();
-        for _ in 0..random(4 * nodes) {
-            let (from, to) = (random(nodes) as usize, random(nodes) as usize);
+        for _ in 0..random.usize(..4 * nodes) {
+            let (from, to) = (random.usize(..nodes), random.usize(..nodes));
             if from != to {
-                let weight = potential[from] - potential[to] + 1 + random(12) as i64;
+                let weight = potential[from] - potential[to] + random.i64(1..=12);
                 edges.push(Edge { from: from as u32, to: to as u32, weight });
             }
         }

@@ -96,19 +96,15 @@ mod tests {
     #[test]
     fn items_come_out_by_key_whatever_is_pushed_in_between() {
         let mut queue = RadixQueue::new();
-        let mut state = 7_u64;
-        let mut random = |below: u64| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            (state >> 33) % below
-        };
+        let mut random = fastrand::Rng::with_seed(7);
         for round in 0..200 {
             queue.restart(-(1 << 40));
             let mut held: Vec<i64> = Vec::new();
             let mut least = -(1 << 40);
             for _ in 0..200 {
-                if random(3) > 0 || held.is_empty() {
-                    let bits = random(30);
-                    let key = least + random(1 << bits) as i64;
+                if random.u8(..3) > 0 || held.is_empty() {
+                    let bits = random.u8(..30);
+                    let key = least + random.i64(0..1 << bits);
                     queue.push(key, round);
                     held.push(key);
                 } else {

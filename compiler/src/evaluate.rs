@@ -14,7 +14,7 @@ use crate::typed::{Expression, ExpressionKind};
 pub(crate) const INFINITY: &str = ":infinity";
 
 /// How many repetitions one `dotimes` may ask for.
-pub(crate) const MAX_COUNT: u64 = crate::expand::MAX_EPISODES;
+pub(crate) const MAX_COUNT: u64 = crate::episode::MAX_EPISODES;
 
 /// What a number inside of a calculation is called.
 const NUMBER: &str = "part of a calculation";

@@ -11,15 +11,13 @@ use kirk_network::{Bound, Duration};
 use crate::ast::{Condition, Ident, Limits, Value, ValueKind};
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
-use crate::episode::{Episode, Interval, Kind};
+use crate::episode::{Episode, Interval, Kind, MAX_EPISODES};
 use crate::form::clip;
 use crate::problem::Problems;
 use crate::source::Span;
 use crate::typed::{Between, Body, EventOf, Expression, Model, Program, Timing, Work};
 use name::Occurrences;
 use scope::{Named, Scopes, Target};
-
-pub use limits::{MAX_DEPTH, MAX_EPISODES};
 
 /// The tree of episodes of the program to start from. Expects a model without errors: in particular no recursion.
 pub(crate) fn expand(model: &Model, problems: &mut Problems) -> Option<Episode> {

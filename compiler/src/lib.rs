@@ -91,7 +91,7 @@ pub use analyse::symbols::{Place, Symbol, SymbolKind, Symbols, symbols};
 pub use code::{Code, explain};
 pub use companions::{Companion, companions};
 pub use diagnostic::{Diagnostic, Edit, Label, Severity, Suggestion, Text};
-pub use expand::{MAX_DEPTH, MAX_EPISODES};
+pub use episode::{MAX_DEPTH, MAX_EPISODES};
 pub use explain::{explain_conflict, total};
 pub use format::format;
 pub use front::{Front, front, front_in_order};

@@ -16,7 +16,6 @@ use serde::Serialize;
 use tokio::sync::broadcast;
 
 use crate::clock::Clock;
-use crate::file::Ticket;
 use crate::happening::Happening;
 use crate::snapshot::Snapshot;
 
@@ -40,6 +39,9 @@ struct Shared {
     ignored: Mutex<HashSet<(String, String)>>,
     happenings: broadcast::Sender<Arc<Happening>>,
 }
+
+/// Stands for everything that was written to the journal before it was asked for. Later tickets are greater.
+pub(crate) type Ticket = u64;
 
 /// What reaches the loop.
 pub(crate) enum Message {

@@ -12,7 +12,7 @@ use std::sync::mpsc::{Sender, channel};
 
 use kirk_runtime::journal::{Journal, Line, read, write};
 
-use crate::desk::Desk;
+use crate::desk::{Desk, Ticket};
 use crate::lock::{Held, hold, lock};
 
 /// A journal that is being written.
@@ -30,9 +30,6 @@ pub(crate) struct JournalFile {
     ticket: Ticket,
     _held: Held,
 }
-
-/// Stands for everything that was written before it was asked for. Later tickets are greater.
-pub(crate) type Ticket = u64;
 
 /// Journals are written by machines, but a robot does not do more in its life.
 const LARGEST: u64 = 1 << 30;

@@ -15,10 +15,10 @@ use kirk_runtime::journal::{Line, Record};
 use kirk_runtime::{Answer, Execution, Executive, Output, Replanned, Sending};
 
 use crate::clock::Clock;
-use crate::desk::{AnswerNews, Desk, Ignored, Message, Reply};
+use crate::desk::{AnswerNews, Desk, Ignored, Message, Reply, Ticket};
 use crate::driver::Running;
 use crate::failure;
-use crate::file::{JournalFile, Ticket};
+use crate::file::JournalFile;
 use crate::happening::Happening;
 use crate::lateness::Lateness;
 use crate::mission::Ready;

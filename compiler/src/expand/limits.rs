@@ -3,16 +3,11 @@
 use crate::analyse::calls_of;
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
+use crate::episode::{MAX_DEPTH, MAX_EPISODES};
 use crate::evaluate;
 use crate::form::clip;
 use crate::problem::Problems;
 use crate::typed::{Body, Model, Work};
-
-/// How many episodes a program may unfold to, internal ones included.
-pub const MAX_EPISODES: u64 = 200_000;
-
-/// How deep episodes may be nested in each other.
-pub const MAX_DEPTH: u64 = 1_000;
 
 /// True if the program stays within the limits; reports it if not.
 pub(super) fn check(model: &Model, entry: usize, problems: &mut Problems) -> bool {

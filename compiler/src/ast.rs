@@ -398,11 +398,13 @@ pub struct Within {
 }
 
 /// A value as written: an argument, or something a slot may contain.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
+#[serde(transparent)]
 pub struct Value {
     /// What it is.
     pub kind: ValueKind,
     /// Where.
+    #[serde(skip)]
     pub span: Span,
 }
 
@@ -529,7 +531,7 @@ impl AmountKind {
 impl Serialize for Amount {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match &self.kind {
-            AmountKind::Number(duration) => seconds(*duration, serializer),
+            AmountKind::Number(duration) => seconds(duration, serializer),
             AmountKind::Infinite => serializer.serialize_str(":infinity"),
             AmountKind::Named(name) => name.serialize(serializer),
             AmountKind::Unit(name, _, amount) => (name, amount).serialize(serializer),
@@ -546,16 +548,10 @@ impl Serialize for Amount {
     }
 }
 
-impl Serialize for Value {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.kind.serialize(serializer)
-    }
-}
-
 impl Serialize for ValueKind {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
-            ValueKind::Number(number) => seconds(*number, serializer),
+            ValueKind::Number(number) => seconds(number, serializer),
             ValueKind::Text(text) => serializer.collect_str(&format_args!("\"{text}\"")),
             ValueKind::True => serializer.serialize_str("t"),
             ValueKind::Nil => serializer.serialize_str("nil"),
@@ -567,7 +563,7 @@ impl Serialize for ValueKind {
 }
 
 /// Seconds as a number: whole ones without a fraction. Exact below 2^53 microseconds, as JSON readers are.
-pub(crate) fn seconds<S: Serializer>(duration: Duration, serializer: S) -> Result<S::Ok, S::Error> {
+pub(crate) fn seconds<S: Serializer>(duration: &Duration, serializer: S) -> Result<S::Ok, S::Error> {
     let micros = duration.as_micros();
     if micros % 1_000_000 == 0 {
         serializer.serialize_i64(micros / 1_000_000)

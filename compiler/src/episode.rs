@@ -1,10 +1,16 @@
 //! The program unfolded: a tree of episodes, each with a start and an end. Serialised for `--emit episodes`.
 
 use kirk_network::{Bound, Duration};
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use crate::ast::{Condition, ValueKind, seconds};
 use crate::source::Span;
+
+/// How many episodes a program may unfold to, internal ones included.
+pub const MAX_EPISODES: u64 = 200_000;
+
+/// How deep episodes may be nested in each other.
+pub const MAX_DEPTH: u64 = 1_000;
 
 /// One occurrence of a program or of a form of a body, from its start event to its end event.
 #[derive(Clone, Debug, Serialize)]
@@ -89,8 +95,9 @@ pub struct EventOf {
     pub end: bool,
 }
 
-/// An interval of durations.
-#[derive(Clone, Copy, Debug)]
+/// An interval of durations; a list of two when it is serialised, the upper bound null if there is none.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[serde(into = "Vec<Side>")]
 pub struct Interval {
     /// The least.
     pub lower: Duration,
@@ -117,18 +124,15 @@ impl Kind {
     }
 }
 
-/// `[lower, upper]`, the upper bound null if there is none.
-impl Serialize for Interval {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        struct Seconds(Bound);
-        impl Serialize for Seconds {
-            fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-                match self.0 {
-                    Bound::Finite(duration) => seconds(duration, serializer),
-                    Bound::Infinite => serializer.serialize_none(),
-                }
-            }
-        }
-        serializer.collect_seq([Seconds(Bound::Finite(self.lower)), Seconds(self.upper)])
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Side {
+    Finite(#[serde(serialize_with = "seconds")] Duration),
+    Infinite,
+}
+
+impl From<Interval> for Vec<Side> {
+    fn from(interval: Interval) -> Vec<Side> {
+        vec![Side::Finite(interval.lower), interval.upper.finite().map_or(Side::Infinite, Side::Finite)]
     }
 }

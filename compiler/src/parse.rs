@@ -22,7 +22,7 @@ use std::collections::BTreeSet;
 use crate::ast::{Ident, NamedNumber, Program};
 use crate::form::{Form, FormKind};
 use crate::problem::Problems;
-use crate::words::DEFINITIONS;
+use crate::words::{DEFINITIONS, usage};
 use slips::{expected, unexpected};
 
 /// The package of definitions that no `in-package` comes before.
@@ -71,7 +71,7 @@ fn defined(forms: &[Form], program: &Program) -> BTreeSet<String> {
 }
 
 fn named_number(form: &Form, rest: &[Form], home: &str, problems: &mut Problems) -> Option<NamedNumber> {
-    const SHAPE: &str = "A named number is `(defparameter *name* 15)`.";
+    const SHAPE: &str = usage("defparameter");
     match rest {
         [name, value] | [name, value, Form { kind: FormKind::String(_), .. }] => match ident(name) {
             Some(name) => Some(NamedNumber {

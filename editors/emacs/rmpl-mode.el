@@ -26,12 +26,9 @@
   "The kirk to start: a name to look for on the path, or a file."
   :type 'string)
 
-(defconst rmpl--body-from
-  '((define-control-program . 3) (defclass . 3) (defpackage . 2) (defparameter . 2) (defconstant . 2)
-    (declare . 2) (duration . 2) (sequence . 1) (parallel . 1) (with-temporal-constraint . 2)
-    (dotimes . 2) (let . 2) (let* . 2) (label . 2) (between . 3))
-  "How many parts of a form stand on the line of its operator.
-Those after them are its body, and stand two columns in.")
+(defconst rmpl--bodies
+  '(define-control-program defparameter defconstant defclass defpackage declare sequence parallel with-temporal-constraint dotimes let let* label between duration)
+  "What has a body, which stands two columns in.")
 
 (defun rmpl--operator (open)
   "The operator of the list at OPEN, without its package; nil if it is no name."
@@ -56,15 +53,14 @@ STATE is that of the parser there, as `lisp-indent-function' has it."
   (let* ((open (elt state 1))
          (around (cdr (reverse (elt state 9))))
          (column (save-excursion (goto-char open) (current-column)))
-         (operator (rmpl--operator open))
-         (body (alist-get operator rmpl--body-from)))
+         (operator (rmpl--operator open)))
     (cond
      ;; The slots of a class and the parts of a slot are data.
      ((memq 'defclass (mapcar #'rmpl--operator (seq-take around 2))) (1+ column))
      ((null operator) (1+ column))
-     ((null body) nil)
+     ((not (memq operator rmpl--bodies)) nil)
      ;; The second event stands below the first.
-     ((and (eq operator 'between) (< (rmpl--parts-before open indent-point) body)) nil)
+     ((and (eq operator 'between) (< (rmpl--parts-before open indent-point) 3)) nil)
      (t (+ 2 column)))))
 
 (defconst rmpl--font-lock

@@ -2,12 +2,12 @@
 
 use std::collections::HashSet;
 
+use kirk_compiler::words::{Keyword, Part, Position, keyword, word};
 use kirk_compiler::{Span, Symbol, SymbolKind};
 
 use crate::analysis::Analysis;
 use crate::cursor::{Cursor, cursor};
 use crate::hover::program;
-use crate::vocabulary::{Position, WORDS, Word, keywords, word};
 
 /// Something that may be written.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -49,25 +49,6 @@ pub enum CompletionKind {
     Value,
 }
 
-/// What may stand in a place.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Wanted {
-    /// A form whose word stands in this position.
-    Form(Position),
-    /// A name or a number.
-    Value,
-    /// `t` or `nil`.
-    Flag,
-    /// A bound that may be infinite.
-    UpperBound,
-    /// A label or a program.
-    Occurrence,
-    /// A class.
-    Class,
-    /// A keyword of the form.
-    Keyword(&'static str),
-}
-
 /// Everything that may be written at an offset. The editor narrows it down by what is written of the word.
 pub fn completion(analysis: &Analysis, offset: u32) -> Vec<Completion> {
     let text = analysis.text();
@@ -80,90 +61,37 @@ pub fn completion(analysis: &Analysis, offset: u32) -> Vec<Completion> {
 }
 
 /// What may stand at the cursor.
-fn wanted(cursor: &Cursor<'_>) -> Vec<Wanted> {
-    if cursor.first {
-        return first(cursor);
+fn wanted(cursor: &Cursor<'_>) -> Vec<Part> {
+    let around = cursor.head(usize::from(cursor.first));
+    let before = cursor.open.iter().rev().nth(usize::from(cursor.first)).map(|open| open.before);
+    // How many parts stand before the cursor, and before the parenthesis that is open there.
+    let Some(before) = before.map(|before| before.saturating_sub(1 + usize::from(cursor.first))) else {
+        return vec![Part::Form(Position::Definition)];
+    };
+    match cursor.keyword.as_deref().and_then(keyword).map_or(Part::Name, |keyword| keyword.value) {
+        Part::Name => {}
+        value => return vec![value],
     }
-    if cursor.open.is_empty() {
-        return vec![Wanted::Form(Position::Definition)];
-    }
-    let head = cursor.head(0);
-    let before = cursor.open.last().map_or(0, |open| open.before);
-    match cursor.keyword.as_deref() {
-        Some("slack" | "contingent" | "finalp") => return vec![Wanted::Flag],
-        Some("upper-bound" | "max-observation-delay") => return vec![Wanted::UpperBound, Wanted::Value],
-        Some("lower-bound" | "min-observation-delay") => return vec![Wanted::Value],
-        Some("type") => return vec![Wanted::Class],
-        _ => {}
-    }
-    match head.as_str() {
-        "simple" => vec![Wanted::Keyword("simple")],
-        "simple-temporal" => vec![Wanted::Keyword("simple-temporal")],
-        "duration" if before == 1 => vec![Wanted::Form(Position::Duration)],
-        "duration" => vec![Wanted::Keyword("duration")],
-        "start" | "end" => vec![Wanted::Occurrence],
-        "between" if before < 3 => vec![Wanted::Form(Position::Event)],
-        "between" => vec![Wanted::Form(Position::Constraint)],
-        "with-temporal-constraint" if before == 1 => vec![Wanted::Form(Position::Constraint)],
-        "delay" => vec![Wanted::Value, Wanted::UpperBound],
-        "declare" => vec![Wanted::Form(Position::Declaration)],
-        "requires" | "effect" | "and" | "or" | "not" | "over" | "at" => {
-            vec![Wanted::Form(Position::Condition)]
-        }
-        "=" => vec![Wanted::Value],
-        "define-control-program" if before < 3 => Vec::new(),
-        "label" | "dotimes" | "let" | "let*" if before < 2 => Vec::new(),
-        "defpackage" if before > 1 => vec![Wanted::Keyword("defpackage")],
-        "defclass" | "defpackage" | "in-package" | "primitive" => Vec::new(),
-        "defparameter" | "defconstant" => {
-            if before > 1 {
-                vec![Wanted::Value]
-            } else {
-                Vec::new()
-            }
-        }
-        "" | ":slack" if matches!(cursor.head(1).as_str(), "sequence" | "parallel") => {
-            vec![Wanted::Keyword("sequence")]
-        }
-        _ if cursor.is_in_slot() => vec![Wanted::Keyword("slot")],
-        _ => match word(&head).map(|word| word.position) {
-            Some(Position::Body | Position::Definition) => vec![Wanted::Form(Position::Body)],
-            // The argument of a call, or of a calculation.
-            _ => vec![Wanted::Value],
-        },
+    let form = word(&around);
+    match form.and_then(|form| form.part(before)) {
+        Some(Part::Options) if cursor.first => vec![Part::Keywords, Part::Form(Position::Body)],
+        Some(Part::Options) => vec![Part::Form(Position::Body)],
+        Some(Part::Clause) => vec![Part::Keywords],
+        Some(Part::Keywords) if cursor.first => vec![Part::Number],
+        Some(part) => vec![part],
+        None if form.is_some() || around.is_empty() && cursor.first => Vec::new(),
+        None if cursor.is_in_slot() || is_in_options(cursor) => vec![Part::Keywords],
+        // The argument of a call, or of a calculation.
+        None => vec![Part::Number],
     }
 }
 
-/// What may stand right behind a `(`, by the form around it.
-fn first(cursor: &Cursor<'_>) -> Vec<Wanted> {
-    let around = cursor.head(1);
-    let before = cursor.open.iter().rev().nth(1).map_or(0, |open| open.before);
-    if cursor.open.len() == 1 {
-        return vec![Wanted::Form(Position::Definition)];
-    }
-    match around.as_str() {
-        "declare" => vec![Wanted::Form(Position::Declaration)],
-        "duration" => vec![Wanted::Form(Position::Duration)],
-        "with-temporal-constraint" if before == 2 => vec![Wanted::Form(Position::Constraint)],
-        "between" if before < 4 => vec![Wanted::Form(Position::Event)],
-        "between" => vec![Wanted::Form(Position::Constraint)],
-        "start" | "end" => vec![Wanted::Occurrence],
-        "sequence" | "parallel" if before == 2 => {
-            vec![Wanted::Keyword("sequence"), Wanted::Form(Position::Body)]
-        }
-        "requires" | "effect" | "and" | "or" | "not" | "over" | "at" => {
-            vec![Wanted::Form(Position::Condition)]
-        }
-        "=" => vec![Wanted::Form(Position::Condition)],
-        "define-control-program" if before == 3 => Vec::new(),
-        "dotimes" | "let" | "let*" | "label" if before == 2 => Vec::new(),
-        "defpackage" => vec![Wanted::Keyword("defpackage")],
-        "defclass" | "" => Vec::new(),
-        _ => match word(&around).map(|word| word.position) {
-            Some(Position::Body | Position::Definition) => vec![Wanted::Form(Position::Body)],
-            _ => vec![Wanted::Form(Position::Number)],
-        },
-    }
+/// True in `(sequence (here`.
+fn is_in_options(cursor: &Cursor<'_>) -> bool {
+    let head = cursor.head(0);
+    let around = word(&cursor.head(1));
+    (head.is_empty() || head.starts_with(':'))
+        && around.is_some_and(|form| form.part(0) == Some(Part::Options))
 }
 
 struct Offer<'a> {
@@ -176,9 +104,9 @@ struct Offer<'a> {
 }
 
 impl Offer<'_> {
-    fn add(&mut self, wanted: Wanted) {
+    fn add(&mut self, wanted: Part) {
         match wanted {
-            Wanted::Form(position) => {
+            Part::Form(position) => {
                 self.words(position);
                 match position {
                     Position::Body => self.programs(),
@@ -186,15 +114,21 @@ impl Offer<'_> {
                     _ => {}
                 }
             }
-            Wanted::Value => {
-                self.values();
-                if !self.cursor.first {
-                    self.words(Position::Number);
-                }
+            Part::Content => {
+                self.words(Position::Declare);
+                self.add(Part::Form(Position::Body));
             }
-            Wanted::Flag => ["t", "nil"].iter().for_each(|flag| self.plain(flag, CompletionKind::Value, "")),
-            Wanted::UpperBound => self.plain(":infinity", CompletionKind::Value, "No limit."),
-            Wanted::Occurrence => {
+            Part::Number if self.cursor.first => self.words(Position::Number),
+            Part::Number => {
+                self.values();
+                self.words(Position::Number);
+            }
+            Part::Bound => {
+                self.plain(":infinity", CompletionKind::Value, "No limit.");
+                self.add(Part::Number);
+            }
+            Part::Flag => ["t", "nil"].iter().for_each(|flag| self.plain(flag, CompletionKind::Value, "")),
+            Part::Occurrence => {
                 for symbol in &self.analysis.symbols.symbols {
                     match symbol.kind {
                         SymbolKind::Label => self.plain(&symbol.name, CompletionKind::Label, "a label"),
@@ -209,26 +143,21 @@ impl Offer<'_> {
                     }
                 }
             }
-            Wanted::Class => {
+            Part::Class => {
                 for symbol in &self.analysis.symbols.symbols {
                     if let SymbolKind::Class(_) = symbol.kind {
                         self.plain(&symbol.name, CompletionKind::Class, "a class");
                     }
                 }
             }
-            Wanted::Keyword(head) => self.keywords(head),
+            Part::Keywords | Part::Options | Part::Clause => self.keywords(),
+            Part::Name | Part::List => {}
         }
     }
 
     fn words(&mut self, position: Position) {
-        for Word { name, shape, snippet, about, .. } in WORDS.iter().filter(|word| word.position == position)
-        {
-            if *name == "declare"
-                && self.cursor.head(usize::from(self.cursor.first)) != "define-control-program"
-            {
-                continue;
-            }
-            self.form(name, CompletionKind::Word, shape, about, snippet);
+        for word in position.words() {
+            self.form(word.name, CompletionKind::Word, &word.shape(), word.about, &word.snippet());
         }
     }
 
@@ -260,24 +189,14 @@ impl Offer<'_> {
         self.push(label, kind, detail, about, snippet);
     }
 
-    fn keywords(&mut self, head: &str) {
-        for (name, about) in keywords(head) {
-            let mut snippet = format!(":{name} ");
-            snippet.push_str(match *name {
-                "slack" | "contingent" | "finalp" => "${1|t,nil|}",
-                "use" => "#:${1:package}",
-                "import-from" => "#:${1:package} #:${2:name}",
-                "type" => "(member ${1})",
-                _ => "${1}",
-            });
-            // `(:slack t)` is a list of its own.
-            let is_list = matches!(head, "sequence" | "defpackage");
-            match is_list
-                && self.cursor.keyword.is_none()
-                && self.cursor.head(0).is_empty() | self.cursor.first
-            {
-                true => self.form(&format!(":{name}"), CompletionKind::Keyword, "", about, &snippet),
-                false => self.push(&format!(":{name}"), CompletionKind::Keyword, "", about, snippet),
+    fn keywords(&mut self) {
+        // `(:slack t)` is a list of its own.
+        let is_list = self.cursor.first && self.cursor.keyword.is_none();
+        for Keyword { name, filled, about, .. } in self.cursor.keywords() {
+            let (name, snippet) = (format!(":{name}"), format!(":{name} {filled}"));
+            match is_list {
+                true => self.form(&name, CompletionKind::Keyword, "", about, &snippet),
+                false => self.push(&name, CompletionKind::Keyword, "", about, snippet),
             }
         }
     }

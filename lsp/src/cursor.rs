@@ -3,6 +3,7 @@
 
 use kirk_compiler::Span;
 use kirk_compiler::read::{Kind, Token, tokens};
+use kirk_compiler::words::{DEFINITIONS, Keyword, SLOT, word};
 
 /// The place in a text.
 #[derive(Clone, Debug)]
@@ -88,15 +89,16 @@ impl Cursor<'_> {
         }
     }
 
-    /// The form whose keyword would stand here, as [`crate::vocabulary::keywords`] calls it.
-    pub(crate) fn keyword_of(&self) -> String {
+    /// The keywords that may stand here.
+    pub(crate) fn keywords(&self) -> &'static [Keyword] {
         let head = self.head(0);
         // `(:slack t)` is a list of its own in the form it belongs to.
-        match head.is_empty() || head.starts_with(':') {
+        let form = match head.is_empty() || head.starts_with(':') {
             true => self.head(1),
-            false if self.is_in_slot() => "slot".to_string(),
+            false if self.is_in_slot() => return SLOT,
             false => head,
-        }
+        };
+        word(&form).map_or(&[], |word| word.keywords)
     }
 
     /// True in `(defclass name (super...) ((slot here`.
@@ -172,9 +174,7 @@ fn starts_a_line(text: &str, at: usize) -> bool {
 /// The reader closes what is open where a definition begins in the first column; so do we.
 fn begins_definition(text: &str, at: usize) -> bool {
     let rest = text[at + 1..].get(..30).unwrap_or(&text[at + 1..]).to_ascii_lowercase();
-    ["define-control-program", "defpackage", "in-package", "defclass", "defparameter", "defconstant"]
-        .iter()
-        .any(|word| rest.starts_with(word))
+    DEFINITIONS.iter().any(|word| rest.starts_with(word))
 }
 
 #[cfg(test)]

@@ -1,12 +1,12 @@
 //! What each piece of a text is, for colours that know the names.
 
 use kirk_compiler::read::{Kind, tokens};
+use kirk_compiler::words::{Position, word};
 use kirk_compiler::{Span, SymbolKind};
 
 use crate::analysis::Analysis;
 use crate::cursor::comments;
 use crate::definition::bare;
-use crate::vocabulary::{Position, word};
 
 /// A piece of the text on one line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,6 +2,7 @@
 
 use kirk_compiler::ast::{Amount, AmountKind, Body, ControlProgram, DurationOf};
 use kirk_compiler::episode::Kind;
+use kirk_compiler::words::word;
 use kirk_compiler::{Source, Span, Symbol, SymbolKind};
 use kirk_network::news::{Treatment, treatments};
 use kirk_network::windows::Window;
@@ -10,7 +11,6 @@ use crate::analysis::Analysis;
 use crate::cursor::pointed_at;
 use crate::mission::{Mission, Occurrence};
 use crate::view::View;
-use crate::vocabulary::{keywords, word};
 use crate::waits::{Waits, in_words, waits};
 
 /// What to show, in Markdown, and what it is about.
@@ -49,13 +49,13 @@ fn word_at(view: &View, offset: u32) -> Option<Hover> {
     let written = analysis.slice(cursor.word);
     let Some(word) = word(written).filter(|_| cursor.first) else {
         let name = written.strip_prefix(':')?.to_lowercase();
-        let (_, about) = keywords(&cursor.keyword_of()).iter().find(|(known, _)| *known == name)?;
-        return Some(Hover { span: cursor.word, markdown: (*about).to_string() });
+        let keyword = cursor.keywords().iter().find(|keyword| keyword.name == name)?;
+        return Some(Hover { span: cursor.word, markdown: keyword.about.to_string() });
     };
-    let mut markdown = format!("```lisp\n{}\n```\n\n{}", word.shape, word.about);
-    // A `delay` is known by its form, the others by their word.
-    let form = if word.name == "delay" { call_around(analysis, cursor.word) } else { cursor.word };
-    if let Some(times) = occurrences(view, form) {
+    let mut markdown = format!("```lisp\n{}\n```\n\n{}", word.shape(), word.about);
+    // Forms with a body are known by their word, others as a whole.
+    let whole = || occurrences(view, call_around(analysis, cursor.word));
+    if let Some(times) = occurrences(view, cursor.word).or_else(whole) {
         markdown.push_str(&format!("\n\n{times}"));
     }
     Some(Hover { span: cursor.word, markdown })

@@ -40,7 +40,6 @@ mod server;
 mod signature;
 mod transport;
 mod view;
-mod vocabulary;
 mod waits;
 
 pub use actions::{Action, actions};

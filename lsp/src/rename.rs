@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 
 use kirk_compiler::read::{Kind, tokens};
+use kirk_compiler::words::word;
 use kirk_compiler::{Place, Severity, Span, Symbol, SymbolKind, Symbols};
 
 use crate::analysis::Analysis;
 use crate::cursor::pointed_at;
 use crate::definition::bare;
-use crate::vocabulary::word;
 
 /// The name at an offset that can be changed.
 pub fn prepare_rename(analysis: &Analysis, offset: u32) -> Result<Span, String> {

@@ -1,11 +1,11 @@
 //! How the form around the cursor is written, and which part of it the cursor is in.
 
 use kirk_compiler::ast::ControlProgram;
+use kirk_compiler::words::word;
 
 use crate::analysis::Analysis;
 use crate::cursor::cursor;
 use crate::hover::program;
-use crate::vocabulary::word;
 
 /// The form around the cursor.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -33,7 +33,7 @@ pub fn signature(analysis: &Analysis, offset: u32) -> Option<Signature> {
         let called = analysis.program.programs.iter().find(|program| program.name.name == head);
         let (label, about) = match (called, word(&head)) {
             (Some(called), _) => (call(called), program(analysis.source_of(called.span), called)),
-            (None, Some(word)) => (word.shape.to_string(), word.about.to_string()),
+            (None, Some(word)) => (word.shape(), word.about.to_string()),
             (None, None) => continue,
         };
         let parameters = parts(&label);

@@ -10,7 +10,7 @@ use crate::nearest::nearest;
 use crate::parse::{DEFAULT_PACKAGE, instead_of_operator};
 use crate::problem::Problems;
 use crate::source::Span;
-use crate::words::OPERATORS;
+use crate::words::Position;
 
 type Table = BTreeMap<(String, String), usize>;
 
@@ -182,8 +182,8 @@ impl Names {
         }
         let from = ident.package.as_deref().map_or(home, |package| self.package(home, package));
         let visible = self.programs.keys().filter(|(package, _)| package == from || self.sees(from, package));
-        let near = nearest(&ident.name, visible.map(|(_, name)| name.as_str()).chain(OPERATORS));
-        if let Some(near) = near.filter(|near| OPERATORS.contains(near)) {
+        let near = nearest(&ident.name, visible.map(|(_, name)| name.as_str()).chain(Position::Body.names()));
+        if let Some(near) = near.filter(|near| Position::Body.has(near)) {
             return Diagnostic::error(
                 Code::UnknownOperator,
                 ident.span,

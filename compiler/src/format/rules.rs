@@ -1,6 +1,7 @@
 //! Which parts of a form stand on the line of its operator, and where the others go.
 
 use super::tree::{Node, NodeKind, Where};
+use crate::words::{Layout, Part, Word, word};
 
 /// Where a part of a form that does not fit on one line goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,42 +52,45 @@ pub(super) fn glue(parts: &[&Node<'_>], values: &[bool], role: Role, index: usiz
         Role::Slot => return Glue::Data,
         Role::Form => {}
     }
-    let body_from = |first: usize| if index < first { Glue::Same } else { Glue::Body };
-    match operator(parts).as_str() {
-        "define-control-program" | "defclass" => body_from(3),
-        "sequence" | "parallel" => {
-            body_from(if parts.get(1).is_some_and(|part| is_options(part)) { 2 } else { 1 })
-        }
-        "with-temporal-constraint" | "dotimes" | "let" | "let*" | "label" | "declare" | "defpackage" => {
-            body_from(2)
-        }
-        "defparameter" | "defconstant" if index == 2 => Glue::Near,
-        "defparameter" | "defconstant" => body_from(2),
-        "between" if index == 2 => Glue::Fill,
-        "between" => body_from(3),
-        "duration" if after_keyword => Glue::Same,
-        "duration" => body_from(2),
-        _ if after_keyword => Glue::Same,
-        "simple" if is_delay(part) && index > 1 => Glue::Align,
-        "simple" if index > 1 => Glue::Fill,
-        _ if matches!(parts[0].kind, NodeKind::Atom(_)) => {
-            if index == 1 {
-                Glue::Same
-            } else {
-                Glue::Align
-            }
-        }
-        _ => Glue::Data,
+    let Some(word) = operator(parts) else {
+        return match parts[0].kind {
+            NodeKind::Atom(_) => aligned(index, after_keyword),
+            _ if after_keyword => Glue::Same,
+            _ => Glue::Data,
+        };
+    };
+    let Some(body) = body_from(word, parts) else {
+        let packed = word.layout == Layout::Packed && index > 1 && !after_keyword && !is_delay(part);
+        return if packed { Glue::Fill } else { aligned(index, after_keyword) };
+    };
+    match word.part(index - 1) {
+        Some(Part::Keywords) if after_keyword => Glue::Same,
+        _ if index >= body => Glue::Body,
+        Some(Part::Form(_)) if index > 1 => Glue::Fill,
+        Some(Part::Number) => Glue::Near,
+        _ => Glue::Same,
     }
+}
+
+fn aligned(index: usize, after_keyword: bool) -> Glue {
+    if index == 1 || after_keyword { Glue::Same } else { Glue::Align }
+}
+
+/// Where the body of a form begins, if it may have one: earlier, if options are left out.
+fn body_from(word: &Word, parts: &[&Node<'_>]) -> Option<usize> {
+    let (Layout::Hanging(first) | Layout::Block(first)) = word.layout else { return None };
+    let left_out = word.part(0) == Some(Part::Options) && !parts.get(1).is_some_and(|part| is_options(part));
+    Some(first - usize::from(left_out))
 }
 
 /// What the part of a list is.
 pub(super) fn role(parts: &[&Node<'_>], role: Role, index: usize) -> Role {
-    match (role, operator(parts).as_str()) {
-        (Role::Form, "defclass") if index == 3 => Role::List,
-        (Role::Form, "let" | "let*") if index == 1 => Role::List,
-        (Role::List, _) => Role::Slot,
-        _ => Role::Form,
+    let is_list =
+        |word: &Word| index > 0 && word.parts.get(index - 1).is_some_and(|(_, part)| *part == Part::List);
+    match role {
+        Role::Form if operator(parts).is_some_and(is_list) => Role::List,
+        Role::List => Role::Slot,
+        Role::Form | Role::Slot => Role::Form,
     }
 }
 
@@ -111,28 +115,26 @@ pub(super) fn parts<'n, 'a>(nodes: &'n [Node<'a>]) -> Vec<&'n Node<'a>> {
     nodes.iter().filter(|node| !matches!(node.kind, NodeKind::Comment(..))).collect()
 }
 
-/// True for forms that have a body, which stands on lines of its own however short it is.
+/// True for forms that have a body, which stands on lines of its own however short it is. A class without slots has none.
 fn is_always_broken(parts: &[&Node<'_>]) -> bool {
-    let count = parts.len();
-    match operator(parts).as_str() {
-        "define-control-program" => count > 3,
-        "defclass" => {
-            matches!(parts.get(3).map(|slots| &slots.kind), Some(NodeKind::List(slots)) if !slots.is_empty())
-        }
-        "sequence" | "parallel" => parts.iter().skip(1).any(|part| !is_options(part)),
-        "with-temporal-constraint" | "dotimes" | "let" | "let*" | "declare" | "duration" => count > 2,
-        "simple" => parts.iter().skip(2).any(|part| is_delay(part)),
-        _ => false,
+    let Some(word) = operator(parts) else { return false };
+    match word.layout {
+        Layout::Block(_) => body_from(word, parts).is_some_and(|body| {
+            let has_slots = |first| word.part(body - 1) != Some(Part::List) || is_filled(first);
+            parts.get(body).is_some_and(|first| has_slots(first))
+        }),
+        Layout::Packed => parts.iter().skip(2).any(|part| is_delay(part)),
+        Layout::Hanging(_) | Layout::Aligned => false,
     }
 }
 
-/// The operator of a form, in lower case and without its package; empty if there is none.
-fn operator(parts: &[&Node<'_>]) -> String {
-    match parts.first().map(|node| &node.kind) {
-        Some(NodeKind::Atom(text)) if text.len() <= 64 && !text.starts_with([':', '"', '#']) => {
-            text.rsplit(':').next().unwrap_or(text).to_lowercase()
+/// The word of the language that a form begins with, in any case and with any package.
+fn operator(parts: &[&Node<'_>]) -> Option<&'static Word> {
+    match parts.first()?.kind {
+        NodeKind::Atom(text) if !text.starts_with([':', '"', '#']) => {
+            word(text.rsplit(':').next().unwrap_or(text))
         }
-        _ => String::new(),
+        _ => None,
     }
 }
 
@@ -142,6 +144,11 @@ fn is_keyword(node: &Node<'_>) -> bool {
 
 fn is_delay(node: &Node<'_>) -> bool {
     matches!(node.kind, NodeKind::Atom(text) if text.to_lowercase().ends_with("-observation-delay"))
+}
+
+/// True for a list with something in it.
+fn is_filled(node: &Node<'_>) -> bool {
+    matches!(&node.kind, NodeKind::List(nodes) if !nodes.is_empty())
 }
 
 /// True for `()` and `(:slack t)`.

@@ -10,7 +10,7 @@ use crate::diagnostic::Diagnostic;
 use crate::form::{Form, FormKind};
 use crate::problem::Problems;
 use crate::source::Span;
-use crate::words::OPERATORS;
+use crate::words::{Position, keywords};
 
 /// Parses the forms of a body.
 pub(super) fn bodies(forms: &[Form], problems: &mut Problems) -> Vec<Body> {
@@ -28,7 +28,7 @@ pub(super) fn bodies(forms: &[Form], problems: &mut Problems) -> Vec<Body> {
 
 /// Parses one body form; `None` if it makes no sense, which is reported.
 fn body(form: &Form, first: &Form, rest: &[Form], problems: &mut Problems) -> Option<Body> {
-    let known = first.word().filter(|word| OPERATORS.contains(word));
+    let known = first.word().filter(|word| Position::Body.has(word));
     match known.or_else(|| slips::body::misspelt(first, rest, problems)) {
         Some("sequence") => Some(Body::Sequence(group(form, first, rest, problems))),
         Some("parallel") => Some(Body::Parallel(group(form, first, rest, problems))),
@@ -97,7 +97,7 @@ fn group(form: &Form, operator: &Form, rest: &[Form], problems: &mut Problems) -
     let (slack, rest) = match rest.split_first() {
         Some((list, rest)) if is_option_list(list) || slips::body::is_option_list(list) => {
             let word = operator.word().unwrap_or_default();
-            let [slack] = options(list.list().unwrap_or_default(), ["slack"], word, problems);
+            let [slack] = options(list.list().unwrap_or_default(), OPTIONS, word, problems);
             (slack.is_some_and(|form| flag(form, "slack", problems)), rest)
         }
         Some((first, _)) if first.keyword().is_some() => {
@@ -135,6 +135,12 @@ pub(super) fn is_constraint(form: &Form) -> bool {
 
 const CONSTRAINT: &str = "simple-temporal";
 
+/// The keywords of a constraint.
+pub(super) const LIMITS: [&str; 2] = keywords(CONSTRAINT);
+
+/// The keywords in the options of a `sequence` or `parallel`.
+const OPTIONS: [&str; 1] = keywords("sequence");
+
 /// `(simple-temporal :lower-bound l :upper-bound u)`.
 pub(super) fn bounds(form: &Form, problems: &mut Problems) -> Option<Bounds> {
     match form.call() {
@@ -148,7 +154,7 @@ pub(super) fn bounds(form: &Form, problems: &mut Problems) -> Option<Bounds> {
 
 /// `:lower-bound l :upper-bound u`.
 pub(super) fn limits(forms: &[Form], span: Span, problems: &mut Problems) -> Bounds {
-    let [lower, upper] = options(forms, ["lower-bound", "upper-bound"], CONSTRAINT, problems);
+    let [lower, upper] = options(forms, LIMITS, CONSTRAINT, problems);
     let [low, high] = Limits::Duration.words();
     let lower = lower.map(|form| amount(form, low, problems));
     let upper = upper.map(|form| amount(form, high, problems));

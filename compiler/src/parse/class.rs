@@ -9,8 +9,9 @@ use crate::diagnostic::Diagnostic;
 use crate::form::{Form, FormKind, clip};
 use crate::nearest::nearest;
 use crate::problem::Problems;
+use crate::words::usage;
 
-const SHAPE: &str = "A class is `(defclass name (super...) ((slot :option value...)...))`.";
+const SHAPE: &str = usage("defclass");
 const SLOT_OPTIONS: [&str; 9] =
     ["initarg", "initform", "type", "reader", "accessor", "finalp", "documentation", "writer", "allocation"];
 

@@ -8,6 +8,7 @@ use crate::diagnostic::Diagnostic;
 use crate::form::Form;
 use crate::nearest::nearest;
 use crate::problem::Problems;
+use crate::words::usage;
 
 /// Parses a condition; `None` if it makes no sense, which is reported.
 pub(super) fn condition(form: &Form, problems: &mut Problems) -> Option<Condition> {
@@ -16,10 +17,9 @@ pub(super) fn condition(form: &Form, problems: &mut Problems) -> Option<Conditio
     }
     let bad = |problems: &mut Problems, at: &Form, message: String| {
         problems.push(
-            Diagnostic::error(Code::BadCondition, at.span, message).primary("a condition was expected").help(
-                "A condition is `(= (accessor object) value)`, put together with `and`, `or`, `not`, `(at :start c)`, \
-                 `(at :end c)` and `(over :all c)`.",
-            ),
+            Diagnostic::error(Code::BadCondition, at.span, message)
+                .primary("a condition was expected")
+                .help(usage("=")),
         );
     };
     let Some((word, rest)) = form.call() else {

@@ -9,7 +9,13 @@ use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::form::Form;
 use crate::problem::Problems;
-use crate::words::BOUNDS;
+use crate::words::keywords;
+
+/// The keywords of `simple`.
+pub(super) const BOUNDS: [&str; 4] = keywords("simple");
+
+/// Those of `duration`.
+pub(super) const CHOICE: [&str; 1] = keywords("duration");
 
 /// Adds declarations, which stand in a `declare` or should, to the program.
 pub(super) fn declare(declarations: &[Form], program: &mut ControlProgram, problems: &mut Problems) {
@@ -62,7 +68,7 @@ pub(super) fn declare(declarations: &[Form], program: &mut ControlProgram, probl
 fn duration(form: &Form, items: &[Form], problems: &mut Problems) -> Option<DurationOf> {
     if let Some((simple, rest)) = items.split_first()
         && let Some(("simple", inside)) = simple.call()
-        && let (Some(bounds), Some([contingent])) = (pairs(inside, BOUNDS), pairs(rest, ["contingent"]))
+        && let (Some(bounds), Some([contingent])) = (pairs(inside, BOUNDS), pairs(rest, CHOICE))
     {
         return Some(Written { bounds, contingent }.duration(form, simple, problems));
     }

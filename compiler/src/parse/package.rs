@@ -8,6 +8,7 @@ use crate::diagnostic::{Diagnostic, Edit};
 use crate::form::{Form, clip};
 use crate::nearest::nearest;
 use crate::problem::Problems;
+use crate::words::usage;
 
 /// Those that say nothing about names are read and have no effect.
 const OPTIONS: [&str; 9] = [
@@ -25,12 +26,12 @@ const OPTIONS: [&str; 9] = [
 /// Parses the definition of a package.
 pub(super) fn package(form: &Form, rest: &[Form], problems: &mut Problems) -> Option<Package> {
     let Some((name, rest)) = rest.split_first() else {
-        problems.push(expected(form, "this package has no name", "Write `(defpackage #:name)`."));
+        problems.push(expected(form, "this package has no name", usage("defpackage")));
         return None;
     };
     let Some(text) = name.designator() else {
         if !name.is_error() {
-            problems.push(unexpected(name, "the name of the package", "Write `(defpackage #:name)`."));
+            problems.push(unexpected(name, "the name of the package", usage("defpackage")));
         }
         return None;
     };
@@ -95,7 +96,7 @@ pub(super) fn entered(
     problems: &mut Problems,
 ) -> Option<String> {
     let (Some(wanted), [name]) = (rest.first().and_then(Form::designator), rest) else {
-        problems.push(expected(form, "`in-package` needs one package", "Write `(in-package #:name)`."));
+        problems.push(expected(form, "`in-package` needs one package", usage("in-package")));
         return None;
     };
     if let Some(known) = packages.iter().find(|package| package.is_called(&wanted)) {

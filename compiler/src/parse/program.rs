@@ -11,7 +11,7 @@ use crate::diagnostic::Diagnostic;
 use crate::form::{Form, FormKind, clip};
 use crate::problem::Problems;
 use crate::source::Span;
-use crate::words::OPERATORS;
+use crate::words::Position;
 
 /// Parses the definition of a program; `defined` are the names of all programs.
 pub(super) fn control_program(
@@ -168,7 +168,7 @@ pub(super) fn reserved_names(forms: &[Form], problems: &mut Problems) {
 }
 
 fn is_reserved(word: &str) -> bool {
-    OPERATORS.contains(&word) || matches!(word, "declare" | "t" | "nil")
+    Position::Body.has(word) || matches!(word, "declare" | "t" | "nil")
 }
 
 fn reserved(name: &Form, word: &str, what: &str) -> Diagnostic {

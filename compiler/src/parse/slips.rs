@@ -12,6 +12,8 @@ pub(super) mod elsewhere;
 pub(super) mod label;
 pub(super) mod options;
 
+use std::fmt::Display;
+
 use crate::code::Code;
 use crate::diagnostic::{Diagnostic, Edit};
 use crate::form::{Form, FormKind, clip, write};
@@ -43,8 +45,8 @@ pub(super) fn head(form: &Form) -> Span {
 }
 
 /// `a`, `b` and `c`.
-pub(super) fn one_of(words: &[&str]) -> String {
-    let quoted: Vec<String> = words.iter().map(|word| format!("`{word}`")).collect();
+pub(super) fn one_of(words: impl IntoIterator<Item = impl Display>) -> String {
+    let quoted: Vec<String> = words.into_iter().map(|word| format!("`{word}`")).collect();
     match quoted.split_last() {
         Some((last, rest)) if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
         _ => quoted.concat(),

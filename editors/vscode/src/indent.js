@@ -4,26 +4,24 @@
 /** Further to the right than this nothing is aligned. */
 const RIGHTMOST = 60;
 
-/** How many parts of a form stand on the line of its operator; those after them are its body, two columns in. */
-const BODY_FROM = new Map(
-  Object.entries({
-    "define-control-program": 3,
-    defclass: 3,
-    defpackage: 2,
-    defparameter: 2,
-    defconstant: 2,
-    declare: 2,
-    duration: 2,
-    sequence: 1,
-    parallel: 1,
-    "with-temporal-constraint": 2,
-    dotimes: 2,
-    let: 2,
-    "let*": 2,
-    label: 2,
-    between: 3,
-  }),
-);
+/** What has a body, which stands two columns in. The arguments of all else stand below the first one. */
+const BODIES = new Set([
+  "define-control-program",
+  "defparameter",
+  "defconstant",
+  "defclass",
+  "defpackage",
+  "declare",
+  "sequence",
+  "parallel",
+  "with-temporal-constraint",
+  "dotimes",
+  "let",
+  "let*",
+  "label",
+  "between",
+  "duration",
+]);
 
 const TOKEN = /\s+|;.*|#\||"(?:\\[^]|[^"\\])*("?)|[()']|[^\s()"';]+/y;
 
@@ -48,8 +46,8 @@ function indentation(text) {
   const list = open?.at(-1);
   if (!list) return open && 0;
   if (list.data || list.parts === 0 || !list.operator) return list.column + 1;
-  const body = BODY_FROM.get(list.operator);
-  const aligned = body === undefined || (list.operator === "between" && list.parts < body);
+  // The second event stands below the first.
+  const aligned = !BODIES.has(list.operator) || (list.operator === "between" && list.parts < 3);
   return aligned && list.align !== undefined && list.align <= RIGHTMOST ? list.align : list.column + 2;
 }
 

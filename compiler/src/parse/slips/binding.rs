@@ -9,10 +9,10 @@ use crate::parse::binding::one;
 use crate::parse::body::{argument, bodies};
 use crate::parse::ident;
 use crate::problem::Problems;
+use crate::words::usage;
 
-const LET: &str = "Write `(let ((x 5) (y (minutes 2))) body...)`.";
-const DOTIMES: &str =
-    "Write `(dotimes (i 3) body...)`: the body three times, with `i` standing for 0, 1 and 2.";
+const LET: &str = usage("let");
+const DOTIMES: &str = usage("dotimes");
 
 /// Names with their values, and the forms of the body.
 type Bindings<'a> = (Vec<(Ident, Argument)>, &'a [Form]);

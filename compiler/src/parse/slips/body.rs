@@ -7,16 +7,15 @@ use crate::diagnostic::{Diagnostic, Edit};
 use crate::form::{Form, FormKind, clip, write};
 use crate::nearest::nearest;
 use crate::parse::amount::{amount, is_calculation};
-use crate::parse::body::{bounds, is_constraint, limits};
+use crate::parse::body::{LIMITS, bounds, is_constraint, limits};
+use crate::parse::options::pairs;
 use crate::problem::Problems;
 use crate::source::Span;
-use crate::words::OPERATORS;
+use crate::words::{Position, usage};
 
 /// How `with-temporal-constraint` is written.
-pub(in crate::parse) const WITHIN: &str =
-    "Write `(with-temporal-constraint (simple-temporal :upper-bound 60) body...)`.";
-const DELAY: &str =
-    "Write `(delay 5 10)`: a wait of 5 to 10 s. `(delay 5 :infinity)` is a wait of at least 5 s.";
+pub(in crate::parse) const WITHIN: &str = usage("with-temporal-constraint");
+const DELAY: &str = usage("delay");
 
 /// Reports what is no list, with what belongs to it; the forms after that.
 pub(in crate::parse) fn no_body<'a>(form: &Form, rest: &'a [Form], problems: &mut Problems) -> &'a [Form] {
@@ -83,7 +82,7 @@ pub(in crate::parse) fn misspelt(
 ) -> Option<&'static str> {
     let word = first.word()?;
     let takes_lists = rest.iter().any(|form| form.list().is_some() && !is_calculation(form));
-    let meant = nearest(word, OPERATORS).filter(|_| takes_lists && word != "declare")?;
+    let meant = nearest(word, Position::Body.names()).filter(|_| takes_lists && word != "declare")?;
     problems.push(
         Diagnostic::error(
             Code::UnknownOperator,
@@ -210,7 +209,7 @@ fn constraint<'a>(
         }
         Some((first, after))
             if first.call().is_none_or(|(word, _)| {
-                word.starts_with("simple") || after.len() == 1 && !OPERATORS.contains(&word)
+                word.starts_with("simple") || after.len() == 1 && !Position::Body.has(word)
             }) =>
         {
             (bounds(first, problems), after)
@@ -255,12 +254,7 @@ pub(in crate::parse) fn no_constraint(form: &Form, problems: &mut Problems) {
     }
     let near = form.call().and_then(|(found, _)| nearest(found, ["simple-temporal"]));
     problems.push(
-        unexpected(
-            form,
-            "`(simple-temporal ...)`",
-            "Write `(simple-temporal :lower-bound 5 :upper-bound 10)`; either bound may be left out.",
-        )
-        .meant(super::head(form), near),
+        unexpected(form, "`(simple-temporal ...)`", usage("simple-temporal")).meant(super::head(form), near),
     );
 }
 
@@ -300,7 +294,7 @@ type Bounded = (String, String);
 
 /// The bounds given by keywords, if nothing else is.
 fn bounded(given: &[Form]) -> Option<Bounded> {
-    let [lower, upper] = crate::parse::options::pairs(given, ["lower-bound", "upper-bound"])?;
+    let [lower, upper] = pairs(given, LIMITS)?;
     let lower = lower.map_or("0".to_string(), write);
     Some((lower, upper.map_or(":infinity".to_string(), write)))
 }

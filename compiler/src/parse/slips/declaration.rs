@@ -7,16 +7,16 @@ use crate::diagnostic::{Diagnostic, Edit};
 use crate::form::{Form, FormKind, clip, write};
 use crate::nearest::nearest;
 use crate::parse::amount::is_calculation;
-use crate::parse::declaration::Written;
+use crate::parse::declaration::{BOUNDS, CHOICE, Written};
 use crate::parse::options::options;
 use crate::problem::Problems;
 use crate::source::Span;
-use crate::words::{BOUNDS, DECLARATIONS};
+use crate::words::{Position, usage};
 
-const SHAPE: &str = "A duration is `(duration (simple :lower-bound 15 :upper-bound 20))`, with `:contingent t` at its end if Nature decides.";
+const SHAPE: &str = usage("duration");
 
 /// The keywords of `simple`, and the one that is often put there.
-const ANYWHERE: [&str; 5] = [BOUNDS[0], BOUNDS[1], BOUNDS[2], BOUNDS[3], "contingent"];
+const ANYWHERE: [&str; 5] = [BOUNDS[0], BOUNDS[1], BOUNDS[2], BOUNDS[3], CHOICE[0]];
 
 /// `(primitive t)`.
 pub(in crate::parse) fn primitive_with(extra: &Form) -> Diagnostic {
@@ -36,13 +36,13 @@ pub(in crate::parse) fn no_declaration<'a>(
         problems.push(
             Diagnostic::error(Code::UnknownDeclaration, head(item), message)
                 .primary("not understood here")
-                .help(format!("The declarations are {}.", one_of(&DECLARATIONS)))
-                .meant(head(item), nearest(word, DECLARATIONS)),
+                .help(format!("The declarations are {}.", one_of(Position::Declaration.names())))
+                .meant(head(item), nearest(word, Position::Declaration.names())),
         );
     } else if item.keyword().is_some() {
         return fallen_out(item, rest, program, problems);
     } else if !item.is_error() {
-        let (help, bare) = match item.word().filter(|word| DECLARATIONS.contains(word)) {
+        let (help, bare) = match item.word().filter(|word| Position::Declaration.has(word)) {
             Some("primitive") | None => {
                 ("A declaration is a list: `(primitive)`.".to_string(), item.word() == Some("primitive"))
             }
@@ -162,7 +162,7 @@ pub(in crate::parse) fn no_duration(
             contingent
         }
         None => {
-            let [contingent] = options(rest, ["contingent"], "duration", problems);
+            let [contingent] = options(rest, CHOICE, "duration", problems);
             contingent
         }
     };

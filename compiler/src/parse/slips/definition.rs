@@ -12,9 +12,9 @@ use crate::nearest::nearest;
 use crate::parse::ident;
 use crate::problem::Problems;
 use crate::source::Span;
-use crate::words::{DECLARATIONS, DEFINITIONS, OPERATORS};
+use crate::words::{DEFINITIONS, Position, usage};
 
-const SHAPE: &str = "A program is `(define-control-program name (parameter...) (declare ...) body...)`.";
+const SHAPE: &str = usage("define-control-program");
 
 /// Reports a top-level form that is no definition. A slip in its first word says enough to go on with what was meant.
 pub(in crate::parse) fn misspelt<'a>(
@@ -37,14 +37,14 @@ fn unknown(form: &Form, defined: &BTreeSet<String>) -> Diagnostic {
     let problem = |message: String| {
         Diagnostic::error(Code::UnknownTopLevel, head(form), message)
             .primary("a definition was expected here")
-            .help(format!("Kirk knows {}.", one_of(&DEFINITIONS)))
+            .help(format!("Kirk knows {}.", one_of(DEFINITIONS)))
     };
     let outside = || problem(format!("`{}` stands outside of every program", clip(word)));
-    if OPERATORS.contains(&word) || defined.contains(word) {
+    if Position::Body.has(word) || defined.contains(word) {
         outside().help(
             "It belongs into the body of a `define-control-program`: is there a `)` too many before it?",
         )
-    } else if DECLARATIONS.contains(&word) || word == "declare" {
+    } else if Position::Declaration.has(word) || word == "declare" {
         outside().help("It belongs into a `(declare ...)` of a program: is there a `)` too many before it?")
     } else if word.is_empty() {
         problem(format!("{} is not a definition", form.describe()))
@@ -132,7 +132,7 @@ pub(in crate::parse) fn is_body(items: &[Form], rest: &[Form], defined: &BTreeSe
     match items.first().and_then(Form::word) {
         Some("declare") => true,
         Some(word) => {
-            let is_form = OPERATORS.contains(&word) || defined.contains(word);
+            let is_form = Position::Body.has(word) || defined.contains(word);
             rest.is_empty() && (is_form || items.iter().any(|item| item.list().is_some()))
         }
         None => false,
@@ -144,7 +144,7 @@ pub(in crate::parse) fn is_declare(item: &Form, problems: &mut Problems) -> bool
     let Some((word, rest)) = item.call() else { return false };
     let inside = rest.first().and_then(Form::call).map(|(word, _)| word);
     let meant =
-        nearest(word, ["declare"]).is_some() && inside.is_some_and(|word| DECLARATIONS.contains(&word));
+        nearest(word, ["declare"]).is_some() && inside.is_some_and(|word| Position::Declaration.has(word));
     if meant {
         let message = format!("there is no operator `{}`", clip(word));
         problems.push(

@@ -7,10 +7,11 @@ use crate::diagnostic::Diagnostic;
 use crate::form::{Form, clip, write};
 use crate::nearest::nearest;
 use crate::problem::Problems;
+use crate::words::usage;
 
-const LABEL: &str = "Write `(label first (drive))`, or `(label (drive i) (drive))` to tell the repetitions of a `dotimes` apart.";
-const BETWEEN: &str = "Write `(between (end a) (start b) (simple-temporal :lower-bound 5 :upper-bound 10))`: b starts 5 to 10 s after a ends.";
-const EVENT: &str = "An event is `(start x)` or `(end x)`, where `x` is a label or the name of a program.";
+const LABEL: &str = usage("label");
+const BETWEEN: &str = usage("between");
+const EVENT: &str = usage("start");
 
 /// A `label` with nothing in it.
 pub(in crate::parse) fn no_name(operator: &Form) -> Diagnostic {

@@ -8,6 +8,7 @@ use crate::nearest::nearest;
 use crate::parse::amount::{is_calculation, unit};
 use crate::problem::Problems;
 use crate::source::Span;
+use crate::words::{Part, keyword};
 
 /// The values of the known keywords as far as they can be guessed; what is wrong is reported.
 pub(in crate::parse) fn guessed<'a, const N: usize>(
@@ -160,7 +161,7 @@ fn no_value(form: &Form, word: &str) -> Diagnostic {
 
 /// True for the keywords that are answered by `t` or `nil`.
 fn is_flag(word: &str) -> bool {
-    matches!(word, "contingent" | "slack")
+    keyword(word).is_some_and(|keyword| keyword.value == Part::Flag)
 }
 
 /// Something stands where a keyword belongs: numbers without their keywords, or a unit after its number.
@@ -211,6 +212,5 @@ fn no_keyword(form: &Form, last: Option<&Form>, forms: &[Form], known: &[&str], 
 /// The keywords to write. `simple` knows `:contingent` only to say that it belongs to `duration`.
 fn list(known: &[&str], owner: &str) -> String {
     let wanted = known.iter().filter(|word| owner != "simple" || **word != "contingent");
-    let words: Vec<String> = wanted.map(|word| format!(":{word}")).collect();
-    one_of(&words.iter().map(String::as_str).collect::<Vec<_>>())
+    one_of(wanted.map(|word| format!(":{word}")))
 }

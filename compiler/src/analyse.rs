@@ -9,8 +9,7 @@ mod names;
 pub(crate) mod symbols;
 mod unused;
 
-use std::cell::Cell;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use crate::Options;
 use crate::ast::{self, Ident};
@@ -22,69 +21,68 @@ use crate::parse::DEFAULT_PACKAGE;
 use crate::problem::Problems;
 use crate::source::Span;
 use crate::typed::{Body, Model, Program, Work};
-use classes::Classes;
 use expression::{Numbers, Resolver, named_numbers};
 use names::Names;
+use symbols::{SymbolKind, Uses};
 
 pub(crate) use bounds::{negative, reversed};
 pub(crate) use calls::calls_of;
 
 /// Resolves all names, checks all declarations, and finds the program to start from.
-pub(crate) fn analyse(program: &ast::Program, options: &Options, problems: &mut Problems) -> Model {
-    let names = Names::new(program, problems);
-    let classes = Classes::new(program, &names, problems);
-    let numbers = named_numbers(program, &names, problems);
-    let labels = labels(program);
+pub(crate) fn analyse(program: &ast::Program, options: &Options, problems: &mut Problems) -> (Model, Uses) {
+    let mut uses = Uses::new(program);
+    let names = Names::new(program, &mut uses, problems);
+    classes::check(program, &names, &mut uses, problems);
+    let numbers = named_numbers(program, &names, &mut uses, problems);
     let mut model = Model::default();
-    let unused = |definition: &ast::ControlProgram| -> Vec<Cell<bool>> {
-        definition.parameters.iter().map(|_| Cell::new(false)).collect()
-    };
-    let used: Vec<Vec<Cell<bool>>> = program.programs.iter().map(unused).collect();
-    for (definition, used) in program.programs.iter().zip(&used) {
-        let scope = definition.parameters.iter().map(|parameter| parameter.name.clone()).collect();
-        let analyser = Analyser {
+    for (index, definition) in program.programs.iter().enumerate() {
+        let mut analyser = Analyser {
             names: &names,
             numbers: &numbers,
-            labels: &labels,
             program,
             definition,
-            scope,
-            used,
+            scope: Vec::new(),
+            uses: &mut uses,
             problems,
         };
-        model.programs.push(analyser.program(&classes));
+        for parameter in &definition.parameters {
+            analyser.variable(SymbolKind::Parameter(index), parameter);
+        }
+        model.programs.push(analyser.program());
     }
     // What is wrong may be why something is not used.
     if !problems.has_errors() {
-        for (definition, used) in program.programs.iter().zip(&used) {
-            unused::report_parameters(definition, used, problems);
-        }
-        unused::report_labels(&labels, problems);
+        unused::report_parameters(program, &uses, problems);
+        unused::report_labels(&uses, problems);
     }
     calls::check_recursion(&model, problems);
     model.entry = entry(program, &names, options, problems);
     if let Some(entry) = model.entry {
         calls::check_use(&model, program, entry, options, problems);
     }
-    model
+    (model, uses)
 }
 
 /// Looks at one program.
 pub(crate) struct Analyser<'a> {
     names: &'a Names,
     numbers: &'a Numbers,
-    labels: &'a Labels,
     program: &'a ast::Program,
     definition: &'a ast::ControlProgram,
     /// The parameters, and the variables of `let` and `dotimes` around the place at hand.
-    scope: Vec<String>,
-    /// Which of the parameters are used.
-    used: &'a [Cell<bool>],
+    scope: Vec<Variable>,
+    uses: &'a mut Uses,
     problems: &'a mut Problems,
 }
 
+/// A parameter, or a variable of `let` or `dotimes`.
+pub(crate) struct Variable {
+    name: String,
+    symbol: usize,
+}
+
 impl Analyser<'_> {
-    fn program(mut self, classes: &Classes<'_>) -> Program {
+    fn program(mut self) -> Program {
         let definition = self.definition;
         let body: Vec<Body> = self.bodies(&definition.body);
         let work = match (definition.primitive, definition.body.first()) {
@@ -104,8 +102,12 @@ impl Analyser<'_> {
                 Work::Body(body)
             }
         };
+        if matches!(work, Work::Body(_)) {
+            // It should have no duration, which has been told; the names in it are names all the same.
+            self.quietly(|it| drop(it.timing()));
+        }
         for condition in [&definition.requires, &definition.effect].into_iter().flatten() {
-            classes.check(condition, definition, self.program, self.names, self.problems);
+            self.condition(condition);
         }
         Program {
             name: definition.name.clone(),
@@ -146,6 +148,13 @@ impl Analyser<'_> {
         }
     }
 
+    /// Takes down the names in what is no use otherwise, and says nothing about it.
+    fn quietly(&mut self, look: impl FnOnce(&mut Self)) {
+        let told = std::mem::take(self.problems);
+        look(self);
+        *self.problems = told;
+    }
+
     /// Knows what the names mean in the place at hand.
     fn resolver(&mut self) -> Resolver<'_> {
         Resolver {
@@ -154,7 +163,7 @@ impl Analyser<'_> {
             program: self.program,
             home: &self.definition.home,
             scope: &self.scope,
-            used: self.used,
+            uses: self.uses,
             problems: self.problems,
         }
     }
@@ -184,30 +193,6 @@ fn around_the_body(problem: Diagnostic, duration: &ast::DurationOf, body: &[ast:
 /// The parenthesis at the end of a form.
 fn closing(form: Span) -> Span {
     Span { start: form.end.saturating_sub(1), ..form }
-}
-
-/// A name that `label` gives: where first, and whether any `between` means it.
-pub(super) struct LabelUse {
-    first: Span,
-    meant: Cell<bool>,
-}
-
-/// All names that a `label` gives, in any program.
-type Labels = BTreeMap<String, LabelUse>;
-
-fn labels(program: &ast::Program) -> Labels {
-    let mut labels = Labels::new();
-    let mut open: Vec<&ast::Body> = program.programs.iter().flat_map(|program| &program.body).collect();
-    while let Some(body) = open.pop() {
-        if let ast::Body::Label(labelled) = body {
-            let ast::Ident { name, span, .. } = &labelled.name;
-            let known =
-                labels.entry(name.clone()).or_insert(LabelUse { first: *span, meant: Cell::new(false) });
-            known.first = known.first.min(*span);
-        }
-        open.extend(body.parts());
-    }
-    labels
 }
 
 /// Finds the program to start from.

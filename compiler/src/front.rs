@@ -8,7 +8,7 @@ use crate::problem::Problems;
 use crate::read::read;
 use crate::source::Source;
 use crate::typed::Model;
-use crate::{Options, Symbols, symbols};
+use crate::{Options, Uses};
 
 /// What is known of sources before anything is unfolded.
 #[derive(Debug)]
@@ -19,6 +19,8 @@ pub struct Front {
     pub program: Program,
     /// The program with every name resolved and every bound checked, and the one to start from.
     pub model: Model,
+    /// The names, with every place where they stand.
+    pub uses: Uses,
     /// What there is to say.
     pub problems: Problems,
 }
@@ -41,13 +43,6 @@ pub fn front_in_order(sources: &[Source], order: &[usize], options: &Options) ->
         parse(&forms, &mut program, &mut problems);
         all[index] = forms;
     }
-    let model = analyse(&program, options, &mut problems);
-    Front { forms: all, program, model, problems }
-}
-
-impl Front {
-    /// All names, with every place where they stand.
-    pub fn symbols(&self) -> Symbols {
-        symbols(&self.program)
-    }
+    let (model, uses) = analyse(&program, options, &mut problems);
+    Front { forms: all, program, model, uses, problems }
 }

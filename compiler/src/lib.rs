@@ -87,7 +87,7 @@ pub mod typed;
 mod unfold;
 pub mod words;
 
-pub use analyse::symbols::{Place, Symbol, SymbolKind, Symbols, symbols};
+pub use analyse::symbols::{Place, Symbol, SymbolKind, Symbols, Uses};
 pub use code::{Code, explain};
 pub use companions::{Companion, companions};
 pub use diagnostic::{Diagnostic, Edit, Label, Severity, Suggestion, Text};

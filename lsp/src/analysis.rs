@@ -128,9 +128,9 @@ pub fn analyse_among(text: String, companions: &Companions) -> (Analysis, Unjudg
     let Companions { others, places, order } = companions;
     let mut sources = vec![Source::new("", text)];
     sources.extend(others.iter().cloned());
-    let front = front_in_order(&sources, order, &Options::default());
-    let symbols = front.symbols();
-    let Front { mut forms, program, model, problems } = front;
+    let Front { mut forms, program, model, uses, problems } =
+        front_in_order(&sources, order, &Options::default());
+    let symbols = uses.sorted();
     let forms = std::mem::take(&mut forms[0]);
     let mut diagnostics = problems.into_sorted();
     let is_library = model.entry.is_none();

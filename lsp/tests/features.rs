@@ -147,6 +147,22 @@ fn renaming_changes_every_place_and_nothing_else() {
 }
 
 #[test]
+fn renaming_reaches_what_packages_export_and_import() {
+    let text = "(defpackage #:tools (:export #:HOP #:rover))
+(in-package #:tools)
+(defclass rover () ((place :accessor place)))
+(define-control-program hop () (declare (primitive)))
+(defpackage #:mission (:import-from #:tools #:hop #:rover))
+(in-package #:mission)
+(defclass racer (rover) ())
+(define-control-program main () (hop))
+";
+    let renamed = |needle, new| renamed(&marked(text, needle), new);
+    assert_eq!(renamed("(ho^p))", "jump"), text.replace("HOP", "jump").replace("hop", "jump"));
+    assert_eq!(renamed("(ro^ver)", "cart"), text.replace("rover", "cart"));
+}
+
+#[test]
 fn renaming_is_refused_with_a_reason() {
     let of = |needle: &str, new: &str| renamed(&marked(NAMES, needle), new);
     let refusals = [

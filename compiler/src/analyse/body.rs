@@ -1,7 +1,8 @@
 //! The forms of a body: what is called, with which values, and which events are meant.
 
-use super::Analyser;
-use crate::ast::{self, Limits};
+use super::symbols::SymbolKind;
+use super::{Analyser, Variable};
+use crate::ast::{self, Ident, Limits};
 use crate::code::Code;
 use crate::diagnostic::{Diagnostic, Edit};
 use crate::evaluate;
@@ -47,7 +48,7 @@ impl Analyser<'_> {
     #[inline(never)]
     fn binding(&mut self, binding: &ast::Let) -> Body {
         let values = binding.bindings.iter().map(|(_, value)| self.argument(value)).collect();
-        let names = binding.bindings.iter().map(|(name, _)| name.name.clone()).collect();
+        let names = binding.bindings.iter().map(|(name, _)| name);
         Body::Let { values, body: self.inside(names, &binding.body) }
     }
 
@@ -68,12 +69,18 @@ impl Analyser<'_> {
     }
 
     /// A body in which more variables are known.
-    fn inside(&mut self, names: Vec<String>, body: &[ast::Body]) -> Vec<Body> {
+    fn inside<'n>(&mut self, names: impl IntoIterator<Item = &'n Ident>, body: &[ast::Body]) -> Vec<Body> {
         let outside = self.scope.len();
-        self.scope.extend(names);
+        names.into_iter().for_each(|name| self.variable(SymbolKind::Variable, name));
         let body = self.bodies(body);
         self.scope.truncate(outside);
         body
+    }
+
+    /// One more variable is known from here on.
+    pub(super) fn variable(&mut self, kind: SymbolKind, name: &Ident) {
+        let symbol = self.uses.define(kind, name);
+        self.scope.push(Variable { name: name.name.clone(), symbol });
     }
 
     /// `let*`: one variable after the other, each known to the next.
@@ -83,7 +90,7 @@ impl Analyser<'_> {
         let mut values = Vec::new();
         for (name, value) in &binding.bindings {
             values.push(self.argument(value));
-            self.scope.push(name.name.clone());
+            self.variable(SymbolKind::Variable, name);
         }
         let mut body = self.bodies(&binding.body);
         self.scope.truncate(before);
@@ -103,7 +110,7 @@ impl Analyser<'_> {
             self.resolver().report(problem);
             count.kind = ExpressionKind::Error;
         }
-        let body = self.inside(vec![dotimes.variable.name.clone()], &dotimes.body);
+        let body = self.inside([&dotimes.variable], &dotimes.body);
         Body::Repeat { count, variable: dotimes.variable.span, body, operator: dotimes.operator }
     }
 
@@ -118,25 +125,30 @@ impl Analyser<'_> {
     fn event(&mut self, event: &ast::EventOf) -> Option<EventOf> {
         let arguments: Option<Vec<Expression>> =
             event.arguments.as_ref().map(|values| values.iter().map(|value| self.argument(value)).collect());
-        let exactly = self.names.program(&event.name, &self.definition.home);
-        let occurring = || self.names.program(&occurs(&event.name)?, &self.definition.home);
-        let program = exactly.or_else(occurring);
+        let home = &self.definition.home;
+        let of = occurs(&event.name);
+        let exactly = self.names.program(&event.name, home);
+        let program = exactly.or_else(|| self.names.program(of.as_ref()?, home));
         let is_occurrence = exactly.is_none() && program.is_some();
-        let label = self.labels.get(&event.name.name).filter(|_| event.name.package.is_none());
-        if let Some(label) = label {
-            label.meant.set(true);
-        } else if program.is_none() {
-            if !self.problems.has_lost(&event.name.name) {
-                self.unknown_event(&event.name);
+        match (self.uses.label(&event.name), program) {
+            (Some(label), _) => self.uses.place(label, event.name.span),
+            (None, Some(program)) => {
+                let name = of.filter(|_| is_occurrence).unwrap_or_else(|| event.name.clone());
+                self.uses.global(SymbolKind::Program(program), name.span);
             }
-            return None;
+            (None, None) => {
+                if !self.problems.has_lost(&event.name.name) {
+                    self.unknown_event(&event.name);
+                }
+                return None;
+            }
         }
         let name = event.name.clone();
         Some(EventOf { end: event.end, name, program, is_occurrence, arguments, span: event.span })
     }
 
-    fn unknown_event(&mut self, ident: &ast::Ident) {
-        let labels = self.labels.keys().map(String::as_str);
+    fn unknown_event(&mut self, ident: &Ident) {
+        let labels = self.uses.labels().map(|label| label.name.as_str());
         let programs = self.program.programs.iter().map(|program| program.name.name.as_str());
         let name = clip(&ident.name);
         let numbered = ident.name.split_once('#').map(|(program, _)| program);
@@ -162,9 +174,11 @@ impl Analyser<'_> {
         let home = &self.definition.home;
         let Some(program) = self.names.program(&call.program, home) else {
             let span = call.program.span;
+            let look = |it: &mut Self| call.arguments.iter().for_each(|value| drop(it.argument(value)));
             // What follows a word of another language is not its arguments.
-            if instead_of_operator(&call.program.name).is_none() {
-                call.arguments.iter().for_each(|value| drop(self.argument(value)));
+            match instead_of_operator(&call.program.name) {
+                Some(_) => self.quietly(look),
+                None => look(self),
             }
             if self.problems.has_lost(&call.program.name) {
                 return None;
@@ -176,6 +190,7 @@ impl Analyser<'_> {
             self.problems.push(self.cured(call, problem));
             return None;
         };
+        self.uses.global(SymbolKind::Program(program), call.program.span);
         let target = &self.program.programs[program];
         let (wanted, given) = (target.parameters.len(), call.arguments.len());
         let unread =
@@ -237,7 +252,7 @@ fn shape(target: &ast::ControlProgram) -> String {
 }
 
 /// The program that `a#2` is an occurrence of: `a`. The first one has no number.
-pub(super) fn occurs(ident: &ast::Ident) -> Option<ast::Ident> {
+pub(super) fn occurs(ident: &Ident) -> Option<Ident> {
     let (program, number) = ident.name.rsplit_once('#')?;
     let is_number = number.bytes().all(|b| b.is_ascii_digit()) && !number.starts_with('0');
     if !is_number || matches!(number, "" | "1") {
@@ -246,5 +261,5 @@ pub(super) fn occurs(ident: &ast::Ident) -> Option<ast::Ident> {
     // All of it is written as it is read, so what is cut off is as long in the text.
     let end = ident.span.end.checked_sub(u32::try_from(number.len() + 1).ok()?)?;
     let span = Span { end, ..ident.span };
-    Some(ast::Ident { package: ident.package.clone(), name: program.to_string(), span })
+    Some(Ident { package: ident.package.clone(), name: program.to_string(), span })
 }

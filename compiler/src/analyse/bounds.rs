@@ -118,7 +118,7 @@ impl Analyser<'_> {
     /// Shows where a named number is defined, if that is what is written.
     fn with_definition(&self, problem: Diagnostic, written: Option<&ast::Amount>) -> Diagnostic {
         let Some(ast::Amount { kind: ast::AmountKind::Named(name), .. }) = written else { return problem };
-        if name.package.is_none() && self.scope.contains(&name.name) {
+        if name.package.is_none() && self.scope.iter().any(|variable| variable.name == name.name) {
             return problem;
         }
         match self.names.number(name, &self.definition.home) {

@@ -1,12 +1,15 @@
 //! Classes, and whether conditions and effects fit them.
 
+use super::Analyser;
 use super::names::Names;
-use crate::ast::{Class, Condition, ControlProgram, Ident, Program, Slot, SlotOf, Type, Value, ValueKind};
+use super::symbols::{SymbolKind, Uses};
+use crate::ast::{Class, Condition, Ident, Program, Slot, SlotOf, Type, Value, ValueKind};
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::form::{Form, FormKind, clip, write};
 use crate::nearest::nearest;
 use crate::problem::Problems;
+use crate::source::Span;
 
 /// Types of Lisp that kirk does not look into.
 const LISP_TYPES: [&str; 24] = [
@@ -36,17 +39,14 @@ const LISP_TYPES: [&str; 24] = [
     "atom",
 ];
 
-/// The classes of a program.
-pub(super) struct Classes<'a> {
-    classes: &'a [Class],
-}
-
-impl<'a> Classes<'a> {
-    /// Checks the class definitions.
-    pub(super) fn new(program: &'a Program, names: &Names, problems: &mut Problems) -> Classes<'a> {
-        for class in &program.classes {
-            for parent in &class.supers {
-                if parent.name != "standard-object" && names.class(parent, &class.home).is_none() {
+/// Checks the class definitions.
+pub(super) fn check(program: &Program, names: &Names, uses: &mut Uses, problems: &mut Problems) {
+    for class in &program.classes {
+        for parent in &class.supers {
+            match names.class(parent, &class.home) {
+                Some(index) => uses.global(SymbolKind::Class(index), parent.span),
+                None if parent.name == "standard-object" => {}
+                None => {
                     let known = program.classes.iter().map(|class| class.name.name.as_str());
                     problems.push(
                         Diagnostic::error(
@@ -59,25 +59,19 @@ impl<'a> Classes<'a> {
                     );
                 }
             }
-            for slot in &class.slots {
-                check_slot(class, slot, program, names, problems);
-            }
         }
-        circles(program, names, problems);
-        Classes { classes: &program.classes }
+        for slot in &class.slots {
+            check_slot(class, slot, program, names, uses, problems);
+        }
     }
+    circles(program, names, problems);
+}
 
-    /// Checks a condition or effect of a program, and notes that kirk does not plan with it.
-    pub(super) fn check(
-        &self,
-        condition: &Condition,
-        definition: &ControlProgram,
-        program: &Program,
-        names: &Names,
-        problems: &mut Problems,
-    ) {
-        let name = &definition.name;
-        problems.push(
+impl<'a> Analyser<'a> {
+    /// Checks a condition or effect of the program at hand, and notes that kirk does not plan with it.
+    pub(super) fn condition(&mut self, condition: &Condition) {
+        let name = &self.definition.name;
+        self.problems.push(
             Diagnostic::note(
                 Code::NotPlannedWith,
                 name.span,
@@ -97,15 +91,15 @@ impl<'a> Classes<'a> {
                     open.push(part);
                 }
                 Condition::Holds(slot) => {
-                    self.slots(slot, definition, problems);
+                    self.slots(slot);
                 }
                 Condition::Equal(slot, value) => {
-                    let slots = self.slots(slot, definition, problems);
-                    self.object(value, definition, program, names, problems);
+                    let slots = self.slots(slot);
+                    self.object(value, true);
                     if let Some(first) = slots.first()
                         && !slots.iter().any(|slot| slot.kind.as_ref().is_none_or(|kind| fits(kind, value)))
                     {
-                        problems.push(wrong_type(first, value));
+                        self.problems.push(wrong_type(first, value));
                     }
                 }
             }
@@ -113,12 +107,14 @@ impl<'a> Classes<'a> {
     }
 
     /// The slots an accessor may read; reports an accessor no class has.
-    fn slots(&self, slot: &SlotOf, definition: &ControlProgram, problems: &mut Problems) -> Vec<&'a Slot> {
-        let all = || self.classes.iter().flat_map(|class| &class.slots);
+    fn slots(&mut self, slot: &SlotOf) -> Vec<&'a Slot> {
+        let program = self.program;
+        let all = || program.classes.iter().flat_map(|class| &class.slots);
         let wanted = &slot.accessor.name;
         let found: Vec<&Slot> =
             all().filter(|slot| slot.accessors.iter().any(|name| name.name == *wanted)).collect();
-        if found.is_empty() && !problems.has_lost(wanted) {
+        self.uses.accessor(&slot.accessor);
+        if found.is_empty() && !self.problems.has_lost(wanted) {
             let known = all().flat_map(|slot| &slot.accessors).map(|name| name.name.as_str());
             let slot_itself = all().find(|slot| slot.name.name == *wanted);
             let problem = Diagnostic::error(
@@ -127,7 +123,7 @@ impl<'a> Classes<'a> {
                 format!("no class has an accessor `{}`", clip(wanted)),
             )
             .primary("not the `:reader` or `:accessor` of any slot");
-            problems.push(match slot_itself {
+            self.problems.push(match slot_itself {
                 Some(_) => {
                     problem.help("There is a slot of this name, but it has no `:reader` or `:accessor`.")
                 }
@@ -137,29 +133,34 @@ impl<'a> Classes<'a> {
                 }
             });
         }
-        if let ValueKind::Name(None, name) = &slot.object.kind
-            && !definition.parameters.iter().any(|parameter| parameter.name == *name)
-        {
-            problems.push(unknown(slot.object.span, name, definition));
-        }
+        self.object(&slot.object, false);
         found
     }
 
-    fn object(
-        &self,
-        value: &Value,
-        definition: &ControlProgram,
-        program: &Program,
-        names: &Names,
-        problems: &mut Problems,
-    ) {
-        if let ValueKind::Name(package, name) = &value.kind {
-            let ident = Ident { package: package.clone(), name: name.clone(), span: value.span };
-            let parameter = program.parameters.is_empty() || names.number(&ident, &definition.home).is_none();
-            if parameter && !definition.parameters.iter().any(|parameter| parameter.name == *name) {
-                problems.push(unknown(value.span, name, definition));
-            }
+    /// What a name in a condition means: a parameter; as a value also a named number.
+    fn object(&mut self, object: &Value, is_value: bool) {
+        let ValueKind::Name(package, name) = &object.kind else { return };
+        let ident = Ident { package: package.clone(), name: name.clone(), span: object.span };
+        let parameter = self.scope.iter().find(|parameter| parameter.name == *name);
+        let number = self.names.number(&ident, &self.definition.home);
+        match (parameter, number) {
+            (Some(parameter), _) if package.is_none() => self.uses.place(parameter.symbol, object.span),
+            (_, Some(number)) => self.uses.global(SymbolKind::NamedNumber(number), object.span),
+            _ => {}
         }
+        let known = parameter.is_some() || is_value && number.is_some();
+        if !known && (is_value || package.is_none()) {
+            let problem = self.unknown(object.span, name);
+            self.problems.push(problem);
+        }
+    }
+
+    fn unknown(&self, span: Span, name: &str) -> Diagnostic {
+        let definition = self.definition;
+        let parameters = definition.parameters.iter().map(|parameter| parameter.name.as_str());
+        Diagnostic::error(Code::UnknownName, span, format!("nothing is called `{}`", clip(name)))
+            .primary(format!("not a parameter of `{}`", clip(&definition.name.name)))
+            .meant(span, nearest(name, parameters))
     }
 }
 
@@ -209,28 +210,36 @@ fn circles(program: &Program, names: &Names, problems: &mut Problems) {
     }
 }
 
-fn check_slot(class: &Class, slot: &Slot, program: &Program, names: &Names, problems: &mut Problems) {
+fn check_slot(
+    class: &Class,
+    slot: &Slot,
+    program: &Program,
+    names: &Names,
+    uses: &mut Uses,
+    problems: &mut Problems,
+) {
     let mut open: Vec<&Type> = slot.kind.iter().collect();
     while let Some(kind) = open.pop() {
         match kind {
             Type::Or(kinds) => open.extend(kinds.iter().rev()),
-            Type::Named(name)
-                if !LISP_TYPES.contains(&name.name.as_str()) && names.class(name, &class.home).is_none() =>
-            {
-                let known = LISP_TYPES
-                    .into_iter()
-                    .chain(program.classes.iter().map(|class| class.name.name.as_str()));
-                problems.push(
-                    Diagnostic::warning(
-                        Code::UnknownType,
-                        name.span,
-                        format!("`{}` is not a type kirk knows", clip(&name.name)),
-                    )
-                    .primary("values of this slot are not checked")
-                    .meant(name.span, nearest(&name.name, known).map(|near| name.with_name(near))),
-                );
-            }
-            _ => {}
+            Type::Named(name) => match names.class(name, &class.home) {
+                Some(index) => uses.global(SymbolKind::Class(index), name.span),
+                None if LISP_TYPES.contains(&name.name.as_str()) => {}
+                None => {
+                    let classes = program.classes.iter().map(|class| class.name.name.as_str());
+                    let known = LISP_TYPES.into_iter().chain(classes);
+                    problems.push(
+                        Diagnostic::warning(
+                            Code::UnknownType,
+                            name.span,
+                            format!("`{}` is not a type kirk knows", clip(&name.name)),
+                        )
+                        .primary("values of this slot are not checked")
+                        .meant(name.span, nearest(&name.name, known).map(|near| name.with_name(near))),
+                    );
+                }
+            },
+            Type::Member(_) | Type::Anything => {}
         }
     }
     if let (Some(kind), Some(value)) = (&slot.kind, &slot.initform)
@@ -312,11 +321,4 @@ fn show(kind: &ValueKind) -> String {
         ValueKind::Nil => "nil".to_string(),
         ValueKind::Symbol(name) | ValueKind::Name(_, name) | ValueKind::Other(name) => clip(name),
     }
-}
-
-fn unknown(span: crate::source::Span, name: &str, definition: &ControlProgram) -> Diagnostic {
-    let parameters = definition.parameters.iter().map(|parameter| parameter.name.as_str());
-    Diagnostic::error(Code::UnknownName, span, format!("nothing is called `{}`", clip(name)))
-        .primary(format!("not a parameter of `{}`", clip(&definition.name.name)))
-        .meant(span, nearest(name, parameters))
 }

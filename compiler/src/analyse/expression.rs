@@ -1,10 +1,10 @@
 //! Numbers and arguments: names are resolved, and what does not depend on a variable is calculated.
 
-use std::cell::Cell;
-
 use kirk_network::Bound;
 
+use super::Variable;
 use super::names::Names;
+use super::symbols::{SymbolKind, Uses};
 use crate::ast::{self, AmountKind, Argument, Ident, Value, ValueKind};
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
@@ -19,12 +19,16 @@ use crate::typed::{AmountValue, Expression, ExpressionKind};
 pub(super) type Numbers = Vec<Option<Bound>>;
 
 /// Calculates the named numbers. As in Lisp, one may use those defined before it.
-pub(super) fn named_numbers(program: &ast::Program, names: &Names, problems: &mut Problems) -> Numbers {
+pub(super) fn named_numbers(
+    program: &ast::Program,
+    names: &Names,
+    uses: &mut Uses,
+    problems: &mut Problems,
+) -> Numbers {
     let mut numbers = Numbers::new();
     for definition in &program.parameters {
         let home = &definition.home;
-        let mut resolver =
-            Resolver { names, numbers: &numbers, program, home, scope: &[], used: &[], problems };
+        let mut resolver = Resolver { names, numbers: &numbers, program, home, scope: &[], uses, problems };
         let expression = resolver.amount(&definition.value);
         numbers.push(match resolver.known(&expression, "this value") {
             AmountValue::Known(bound) => Some(bound),
@@ -42,9 +46,8 @@ pub(super) struct Resolver<'a> {
     /// The package the place is in.
     pub(super) home: &'a str,
     /// The variables known there, from the outside in.
-    pub(super) scope: &'a [String],
-    /// Which of the parameters, the outermost, are used.
-    pub(super) used: &'a [Cell<bool>],
+    pub(super) scope: &'a [Variable],
+    pub(super) uses: &'a mut Uses,
     pub(super) problems: &'a mut Problems,
 }
 
@@ -125,17 +128,16 @@ impl Resolver<'_> {
     }
 
     fn name(&mut self, ident: &Ident) -> ExpressionKind {
-        let mine = |known: &String| ident.package.is_none() && *known == ident.name;
+        let mine = |known: &Variable| ident.package.is_none() && known.name == ident.name;
         if let Some(index) = self.scope.iter().rposition(mine) {
-            if let Some(used) = self.used.get(index) {
-                used.set(true);
-            }
+            self.uses.place(self.scope[index].symbol, ident.span);
             return ExpressionKind::Variable(index, ident.name.clone());
         }
         let Some(index) = self.names.number(ident, self.home) else {
             self.unknown_name(ident);
             return ExpressionKind::Error;
         };
+        self.uses.global(SymbolKind::NamedNumber(index), ident.span);
         match self.numbers.get(index) {
             Some(Some(Bound::Finite(number))) => ExpressionKind::Value(ValueKind::Number(*number)),
             Some(Some(Bound::Infinite)) => infinite(),
@@ -158,7 +160,7 @@ impl Resolver<'_> {
         if self.problems.has_lost(&ident.name) {
             return;
         }
-        let variables = self.scope.iter().map(String::as_str);
+        let variables = self.scope.iter().map(|variable| variable.name.as_str());
         let numbers = self.program.parameters.iter().map(|p| p.name.name.as_str());
         let near = match ident.name.as_str() {
             "infinity" | "inf" | "infinite" | "unbounded" | "∞" => Some(":infinity"),

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::symbols::{SymbolKind, Uses};
 use crate::ast::{Ident, Import, Package, Program};
 use crate::code::Code;
 use crate::diagnostic::{Diagnostic, Severity};
@@ -33,7 +34,7 @@ pub(crate) struct Names {
 
 impl Names {
     /// Collects all definitions and reports those that are there twice.
-    pub(super) fn new(program: &Program, problems: &mut Problems) -> Names {
+    pub(super) fn new(program: &Program, uses: &mut Uses, problems: &mut Problems) -> Names {
         let mut names = Names {
             packages: Vec::new(),
             nicknames: BTreeMap::new(),
@@ -79,29 +80,29 @@ impl Names {
             names.slots.extend(named.map(|name| (class.home.clone(), name.name.clone())));
         }
         for package in &program.packages {
-            names.open(package, problems);
+            names.open(package, uses, problems);
         }
         names
     }
 
     /// Takes in what a package sees of others.
-    fn open(&mut self, package: &Package, problems: &mut Problems) {
+    fn open(&mut self, package: &Package, uses: &mut Uses, problems: &mut Problems) {
         let home = &package.name.name;
         for (short, of) in &package.local_nicknames {
-            if let Some(of) = self.check_package(home, &of.name, of.span, problems) {
+            if let Some(of) = self.check_package(home, of, uses, problems) {
                 self.local_nicknames.insert((home.clone(), short.name.clone()), of);
             }
         }
         for used in &package.uses {
-            if let Some(used) = self.check_package(home, &used.name, used.span, problems) {
+            if let Some(used) = self.check_package(home, used, uses, problems) {
                 self.uses.entry(home.clone()).or_default().push(used);
             }
         }
         for import in &package.imports {
             let Import { from, name } = import;
-            let Some(from) = self.check_package(home, &from.name, from.span, problems) else { continue };
+            let Some(from) = self.check_package(home, from, uses, problems) else { continue };
             let wanted = problems.wants(name.span.source) && !problems.has_lost(&name.name);
-            if wanted && !self.has(&from, &name.name) {
+            if !self.has(&from, name, uses) && wanted {
                 problems.push(self.not_there(&from, name, "imported"));
                 // Where it is called, it is not missed again.
                 problems.lose_text(&name.name);
@@ -110,7 +111,7 @@ impl Names {
         }
         for export in &package.exports {
             let wanted = problems.wants(export.span.source) && !problems.has_lost(&export.name);
-            if wanted && !self.has(home, &export.name) {
+            if !self.has(home, export, uses) && wanted {
                 let problem = self.not_there(home, export, "exported");
                 problems.push(Diagnostic { severity: Severity::Warning, ..problem });
             }
@@ -118,11 +119,15 @@ impl Names {
     }
 
     /// True if the package has something of this name, or sees it.
-    fn has(&self, package: &str, name: &str) -> bool {
-        let ident = Ident { package: None, name: name.to_string(), span: Span::default() };
-        let tables = [&self.programs, &self.numbers, &self.classes];
-        tables.into_iter().any(|table| self.find(table, &ident, package).is_some())
-            || self.slots.contains(&(package.to_string(), name.to_string()))
+    fn has(&self, package: &str, name: &Ident, uses: &mut Uses) -> bool {
+        let program = self.program(name, package).map(SymbolKind::Program);
+        let number = || self.number(name, package).map(SymbolKind::NamedNumber);
+        let class = || self.class(name, package).map(SymbolKind::Class);
+        let Some(found) = program.or_else(number).or_else(class) else {
+            return self.slots.contains(&(package.to_string(), name.name.clone()));
+        };
+        uses.global(found, name.span);
+        true
     }
 
     fn not_there(&self, package: &str, name: &Ident, how: &str) -> Diagnostic {
@@ -225,11 +230,19 @@ impl Names {
     }
 
     /// The package meant, if it is one of the source; reports those that are neither that nor part of Lisp and RMPL.
-    fn check_package(&self, home: &str, name: &str, span: Span, problems: &mut Problems) -> Option<String> {
-        let name = self.package(home, name);
+    fn check_package(
+        &self,
+        home: &str,
+        written: &Ident,
+        uses: &mut Uses,
+        problems: &mut Problems,
+    ) -> Option<String> {
+        let span = written.span;
+        let name = self.package(home, &written.name);
         let builtin =
             matches!(name, "cl" | "common-lisp" | "rmpl" | DEFAULT_PACKAGE) || name.starts_with("rmpl/");
         if self.packages.iter().any(|known| known == name) {
+            uses.package(name, span);
             return Some(name.to_string());
         }
         if !builtin {

@@ -1,9 +1,7 @@
 //! What has a name that nothing means: often a slip, or left over.
 
-use std::cell::Cell;
-
-use super::Labels;
-use crate::ast::{Condition, ControlProgram, SlotOf, Value, ValueKind};
+use super::symbols::Uses;
+use crate::ast::Program;
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::form::clip;
@@ -11,19 +9,17 @@ use crate::problem::Problems;
 
 /// Reports parameters of a program with a body that nothing in it means. Those of a primitive program are for whoever executes
 /// it: they are part of the names of its occurrences.
-pub(super) fn report_parameters(definition: &ControlProgram, used: &[Cell<bool>], problems: &mut Problems) {
-    if definition.primitive {
-        return;
-    }
-    for (parameter, used) in definition.parameters.iter().zip(used) {
-        if used.get() || is_in_a_condition(definition, &parameter.name) {
+pub(super) fn report_parameters(program: &Program, uses: &Uses, problems: &mut Problems) {
+    for (index, parameter) in uses.parameters() {
+        let definition = &program.programs[index];
+        if definition.primitive || parameter.is_used() {
             continue;
         }
         let (name, program) = (clip(&parameter.name), clip(&definition.name.name));
         problems.push(
             Diagnostic::warning(
                 Code::NeverUsed,
-                parameter.span,
+                parameter.places[0].span,
                 format!("the parameter `{name}` of `{program}` is never used"),
             )
             .primary("whatever is given for it makes no difference")
@@ -33,42 +29,16 @@ pub(super) fn report_parameters(definition: &ControlProgram, used: &[Cell<bool>]
 }
 
 /// Notes labels that no `between` means. They name events in results all the same.
-pub(super) fn report_labels(labels: &Labels, problems: &mut Problems) {
-    for (name, label) in labels.iter().filter(|(_, label)| !label.meant.get()) {
-        let name = clip(name);
+pub(super) fn report_labels(uses: &Uses, problems: &mut Problems) {
+    for label in uses.labels().filter(|label| !label.is_used()) {
+        let name = clip(&label.name);
+        let first = label.places.iter().map(|place| place.span).min().unwrap_or_default();
         problems.push(
-            Diagnostic::note(Code::NeverUsed, label.first, format!("no `between` means the label `{name}`"))
+            Diagnostic::note(Code::NeverUsed, first, format!("no `between` means the label `{name}`"))
                 .primary("it only gives events another name")
                 .help(format!(
                     "If a constraint was to be about it: `(between (end {name}) (start ...) ...)`."
                 )),
         );
     }
-}
-
-fn is_in_a_condition(definition: &ControlProgram, name: &str) -> bool {
-    let means = |value: &Value| matches!(&value.kind, ValueKind::Name(None, known) if known == name);
-    let mut open: Vec<&Condition> =
-        [&definition.requires, &definition.effect].into_iter().flatten().collect();
-    while let Some(condition) = open.pop() {
-        let found = match condition {
-            Condition::And(parts) | Condition::Or(parts) => {
-                open.extend(parts);
-                false
-            }
-            Condition::Not(part)
-            | Condition::AtStart(part)
-            | Condition::AtEnd(part)
-            | Condition::OverAll(part) => {
-                open.push(part);
-                false
-            }
-            Condition::Equal(SlotOf { object, .. }, value) => means(object) || means(value),
-            Condition::Holds(SlotOf { object, .. }) => means(object),
-        };
-        if found {
-            return true;
-        }
-    }
-    false
 }

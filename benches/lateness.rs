@@ -47,7 +47,10 @@ fn main() {
     {
         let ended = early(events, journal);
         let at = |percent| ended.lateness.percentile(percent).unwrap().as_micros() as f64 / 1000.0 / SPEED;
-        let outcome = ended.execution.failure.map_or("completed".to_string(), |failure| failure.reason);
+        let outcome = ended
+            .execution
+            .failure
+            .map_or("completed".to_string(), |failure| failure.reason.word().to_string());
         let count = ended.lateness.count();
         println!(
             "| {name} ({count} dispatches, {outcome}) | {:.2} | {:.2} | {:.2} | |",
@@ -83,8 +86,8 @@ fn early(events: u32, journal: bool) -> Ended {
                 Ok(Happening::Over { .. }) => return,
                 Ok(Happening::Fixed { rows, .. }) => {
                     for row in rows.iter().filter(|row| row.how == How::Dispatched) {
-                        let (event, time) = (merged.find(&row.event).unwrap(), row.time.unwrap().0);
-                        let deeds = nature.begin(event, Time::from_micros(time.as_micros())).unwrap();
+                        let (event, time) = (merged.find(&row.event).unwrap(), row.time.unwrap());
+                        let deeds = nature.begin(event, time).unwrap();
                         coming.extend(
                             deeds.into_iter().filter_map(|deed| Some(Reverse((deed.news?, deed.event)))),
                         );

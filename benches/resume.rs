@@ -11,11 +11,10 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::time::Instant;
 
-use kirk_network::json::seconds;
 use kirk_network::{Duration, EventId, Time};
 use kirk_runtime::journal::{Clocks, Line, Record, Start, read, write};
 use kirk_runtime::nature::Nature;
-use kirk_runtime::{Executive, Output, Patience, Plan, Replanned, Settings, Setup, Temper, recover, replay};
+use kirk_runtime::{Executive, Input, Output, Patience, Plan, Settings, Setup, Temper, recover, replay};
 use serde_json::value::RawValue;
 use work::{Family, Repeaters};
 
@@ -66,6 +65,11 @@ fn journal(events: u32) -> Vec<String> {
     let merged = plan.network().clone();
     let mut nature = Nature::new(&merged, Temper::Lower, 0, &[]);
     let mut executive = Executive::new(plan, setup);
+    let mut happens = |executive: &mut Executive, at: Time, input: Input| {
+        if let Some(input) = executive.handle(at, input).record {
+            record(at, Record::In(input));
+        }
+    };
     let mut news: BinaryHeap<Reverse<(Time, EventId)>> = BinaryHeap::new();
     let mut now = Time::ZERO;
     while !executive.is_over() {
@@ -80,12 +84,7 @@ fn journal(events: u32) -> Vec<String> {
             }
         }
         if let Some(rebuild) = executive.poll_rebuild(now) {
-            let from = seconds(Duration::from_micros(rebuild.now().as_micros()));
-            match executive.handle_rebuilt(now, rebuild.run()) {
-                Replanned::Followed(known) => record(now, Record::Rebuilt { from, known: Some(known) }),
-                Replanned::NoPlan => record(now, Record::Rebuilt { from, known: None }),
-                Replanned::TooLate => {}
-            }
+            happens(&mut executive, now, Input::rebuilt(rebuild.run()));
             continue;
         }
         let timeout = executive.poll_timeout();
@@ -93,13 +92,11 @@ fn journal(events: u32) -> Vec<String> {
             Some(&Reverse((time, event))) if timeout.is_none_or(|timeout| time <= timeout) => {
                 news.pop();
                 now = now.max(time);
-                executive.handle_news(time, event);
-                record(time, Record::News { event: merged.id(event).to_string() });
+                happens(&mut executive, time, Input::news(&merged, event));
             }
             _ => {
                 now = timeout.unwrap();
-                executive.handle_timeout(now);
-                record(now, Record::Timeout {});
+                happens(&mut executive, now, Input::Timeout {});
             }
         }
     }

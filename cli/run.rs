@@ -8,7 +8,7 @@ use kirk_network::json::{ReadProblem, Seconds, locate};
 use kirk_network::{Duration, EventId, Network, Time};
 use kirk_runtime::execution::FORMAT;
 use kirk_runtime::{
-    Execution, Failure, Impossible, NoPlan, Outcome, Plan, Simulation, Strategy, Temper, simulate,
+    Execution, Failure, Impossible, NoPlan, Outcome, Plan, Reason, Simulation, Strategy, Temper, simulate,
 };
 use serde::Deserialize;
 use serde::de::{Deserializer, MapAccess, Visitor};
@@ -104,12 +104,12 @@ fn not_executed(program: &str) -> Execution {
         outcome: Outcome::Failed,
         failure: Some(Failure {
             event: program.to_string(),
-            time: Seconds(Duration::ZERO),
-            reason: "not-controllable".to_string(),
+            time: Time::ZERO,
+            reason: Reason::NotControllable,
             detail: "there is no strategy that works in every case: some bounds do not go together"
                 .to_string(),
         }),
-        makespan: Seconds(Duration::ZERO),
+        makespan: Time::ZERO,
         seed: None,
         rows: Vec::new(),
     }

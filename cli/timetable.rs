@@ -1,5 +1,6 @@
 //! The timetable of an execution, for people.
 
+use kirk_network::time::Interval;
 use kirk_runtime::{Execution, How, Outcome, Row};
 
 use crate::foreign::one_line;
@@ -8,11 +9,11 @@ use crate::foreign::one_line;
 pub(crate) fn timetable(execution: &Execution) -> String {
     let end = match (&execution.outcome, &execution.failure) {
         (Outcome::Failed, Some(failure)) => {
-            format!("failed at {} s: {} ({})", failure.time.0, one_line(&failure.detail), failure.reason)
+            format!("failed at {} s: {} ({})", failure.time, one_line(&failure.detail), failure.reason.word())
         }
         (Outcome::Failed, None) => "failed".to_string(),
-        (Outcome::Running, _) => format!("at {} s", execution.makespan.0),
-        (Outcome::Completed, _) => format!("completed in {} s", execution.makespan.0),
+        (Outcome::Running, _) => format!("at {} s", execution.makespan),
+        (Outcome::Completed, _) => format!("completed in {} s", execution.makespan),
     };
     let cells: Vec<[String; 3]> = execution.rows.iter().map(cells).collect();
     let width = |column: usize, heading: &str| {
@@ -29,21 +30,21 @@ pub(crate) fn timetable(execution: &Execution) -> String {
 
 /// Time, event and how, as a terminal may show them.
 pub(crate) fn cells(row: &Row) -> [String; 3] {
-    let time = row.time.map_or("-".to_string(), |time| time.0.to_string());
+    let time = row.time.map_or("-".to_string(), |time| time.to_string());
     let mut how = row.how.word().to_string();
     let heard = row.observed.flatten();
     match (row.how, heard) {
-        (How::Buffered, Some(heard)) => how.push_str(&format!(", heard at {}", heard.0)),
-        (How::Imagined, Some(heard)) => how.push_str(&format!(", heard only at {}", heard.0)),
+        (How::Buffered, Some(heard)) => how.push_str(&format!(", heard at {}", heard)),
+        (How::Imagined, Some(heard)) => how.push_str(&format!(", heard only at {}", heard)),
         _ => {}
     }
-    if let Some((low, high)) = row.happened
+    if let Some(Interval { earliest: low, latest: high }) = row.happened
         && (low != high || row.time.is_some_and(|time| time != low))
     {
         if low == high {
-            how.push_str(&format!(", happened at {}", low.0));
+            how.push_str(&format!(", happened at {}", low));
         } else {
-            how.push_str(&format!(", happened in [{}, {}]", low.0, high.0));
+            how.push_str(&format!(", happened in [{}, {}]", low, high));
         }
     }
     [time, one_line(&row.event).into_owned(), how]

@@ -69,7 +69,7 @@ fn pass_on(said: &Receiver<Said>) {
 fn lines(happening: &Happening) -> Vec<String> {
     match happening {
         Happening::Sent { at, event, attempt, .. } if *attempt > 1 => {
-            vec![format!("{:>10}  {}  handed over again, attempt {attempt}", at.0, one_line(event))]
+            vec![format!("{:>10}  {}  handed over again, attempt {attempt}", at, one_line(event))]
         }
         Happening::Sent { .. } | Happening::Over { .. } => Vec::new(),
         Happening::Fixed { rows, .. } => rows
@@ -81,13 +81,13 @@ fn lines(happening: &Happening) -> Vec<String> {
             .collect(),
         Happening::Failed { at, id, reason } => {
             let event = id.split_once('/').map_or(id.as_str(), |(_, event)| event);
-            vec![format!("{:>10}  {}  not confirmed: {}", at.0, one_line(event), one_line(reason))]
+            vec![format!("{:>10}  {}  not confirmed: {}", at, one_line(event), one_line(reason))]
         }
         Happening::Ignored { at, event, why } => {
-            vec![format!("{:>10}  {}  ignored: {}", at.0, one_line(event), one_line(why))]
+            vec![format!("{:>10}  {}  ignored: {}", at, one_line(event), one_line(why))]
         }
         Happening::Warning { at, text } | Happening::Note { at, text } => {
-            vec![format!("{:>10}  {}", at.0, one_line(text))]
+            vec![format!("{:>10}  {}", at, one_line(text))]
         }
     }
 }

@@ -56,11 +56,14 @@ impl Desk {
         start(&all)
     }
 
-    /// The records of one kind that are in the journal.
+    /// The records of one kind that are in the journal: the start, what happened, or what came of it.
     fn records(&self, kind: &str) -> Vec<Value> {
         let text = fs::read_to_string(self.path("journal")).unwrap_or_default();
         let lines = text.lines().filter_map(|line| serde_json::from_str::<Value>(line.get(9..)?).ok());
-        lines.filter_map(|line| line["record"].get(kind).cloned()).collect()
+        let found = |record: &Value| {
+            [record, &record["in"], &record["out"]].into_iter().find_map(|record| record.get(kind)).cloned()
+        };
+        lines.filter_map(|line| found(&line["record"])).collect()
     }
 
     fn lines(&self, name: &str) -> Vec<String> {

@@ -541,7 +541,7 @@ fn a_mission_that_is_killed_at_every_step_goes_on_and_is_verified() {
     let mut sent: BTreeSet<String> = BTreeSet::new();
     for line in text.lines() {
         let line: Value = serde_json::from_str(&line[9..]).unwrap();
-        let record = &line["record"];
+        let record = &line["record"]["in"];
         if let Some(id) = record["executed"]["id"].as_str() {
             confirmed.insert(id.to_string());
         }

@@ -128,7 +128,7 @@ pub fn halfway(plan: &Plan) -> Progress {
         .iter()
         .filter_map(|row| {
             let truth = row.truth.or(row.time)?;
-            let time = Time::from_micros(truth.0.as_micros());
+            let time = Time::from_micros(truth.as_micros());
             Some((time, network.find(&row.event)?.index()))
         })
         .collect();

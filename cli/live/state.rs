@@ -108,7 +108,7 @@ impl State {
             Happening::Ignored { at, event, why } => (at, format!("not heard: {event}: {why}")),
             Happening::Sent { .. } | Happening::Fixed { .. } | Happening::Over { .. } => return,
         };
-        self.say(Time::from_micros(at.0.as_micros()), tone, text);
+        self.say(*at, tone, text);
     }
 
     /// Notes what became of a key that was pressed.

@@ -3,8 +3,8 @@
 use std::time::Duration as Real;
 
 use kirk_executive::{AnswerNews, Happening, Ignored, Next, Possible, Snapshot, Waits};
-use kirk_network::json::{Seconds, seconds};
-use kirk_network::{Duration, Time};
+use kirk_network::Time;
+use kirk_network::time::Interval;
 use kirk_runtime::{How, Outcome, Pending, Row};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
@@ -24,7 +24,7 @@ fn moment(second: i64) -> Moment {
 }
 
 fn row(event: &str, time: i64, how: How) -> Row {
-    let time = Some(seconds(Duration::from_secs(time)));
+    let time = Some(at(time));
     Row { event: event.to_string(), time, how, observed: None, happened: None, truth: None }
 }
 
@@ -34,7 +34,6 @@ fn possible(event: &str, from: i64, until: Option<i64>) -> Possible {
 
 /// A mission at 22 s, with some of everything.
 fn mission() -> Snapshot {
-    let second = |second| seconds(Duration::from_secs(second));
     Snapshot {
         at: at(22),
         program: "main".to_string(),
@@ -44,8 +43,8 @@ fn mission() -> Snapshot {
             row("main:start", 0, How::Dispatched),
             row("human-downlink-science:start", 0, How::Dispatched),
             Row {
-                observed: Some(Some(Seconds(Duration::from_micros(21_967_811)))),
-                happened: Some((second(15), Seconds(Duration::from_micros(16_967_811)))),
+                observed: Some(Some(Time::from_micros(21_967_811))),
+                happened: Some(Interval::new(at(15), Time::from_micros(16_967_811))),
                 ..row("human-downlink-science:end", 22, How::Observed)
             },
             row("robot-drilling:start", 22, How::Dispatched),
@@ -90,7 +89,7 @@ fn seen(snapshot: Snapshot) -> State {
 fn talking() -> State {
     let mut state = seen(mission());
     state.note(&Happening::Failed {
-        at: seconds(Duration::from_secs(20)),
+        at: at(20),
         id: "run/camera-on:start".to_string(),
         reason: "exit status: 7".to_string(),
     });
@@ -167,7 +166,7 @@ fn names_cannot_send_commands_to_the_terminal() {
         possible: vec![possible(name, 3, None)],
         ..mission()
     });
-    let warning = Happening::Warning { at: seconds(Duration::ZERO), text: name.to_string() };
+    let warning = Happening::Warning { at: Time::ZERO, text: name.to_string() };
     state.note(&warning);
     let screen = screen(&state, (80, 24), true);
     let cells = screen.buffer().content();

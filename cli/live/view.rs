@@ -2,8 +2,8 @@
 //! terminal and any encoding will do; colours only underline what words say.
 
 use kirk_executive::{Next, Possible, Snapshot, Waits};
-use kirk_network::json::{Seconds, seconds};
-use kirk_network::{Duration, Time};
+use kirk_network::Time;
+use kirk_network::time::Interval;
 use kirk_runtime::{How, Outcome, Pending, Row};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -294,12 +294,10 @@ fn brief(time: Time) -> Time {
 }
 
 fn brief_cells(row: &Row) -> [String; 3] {
-    let brief =
-        |at: Seconds| seconds(Duration::from_micros(brief(Time::from_micros(at.0.as_micros())).as_micros()));
     cells(&Row {
         time: row.time.map(brief),
         observed: row.observed.map(|heard| heard.map(brief)),
-        happened: row.happened.map(|(low, high)| (brief(low), brief(high))),
+        happened: row.happened.map(|within| Interval::new(brief(within.earliest), brief(within.latest))),
         ..row.clone()
     })
 }

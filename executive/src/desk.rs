@@ -8,10 +8,9 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use kirk_network::json::seconds;
 use kirk_network::model::normal_name;
-use kirk_network::{Duration, EventId, Network, Time};
-use kirk_runtime::Rebuilt;
+use kirk_network::{EventId, Network, Time};
+use kirk_runtime::{Rebuilt, Why};
 use serde::Serialize;
 use tokio::sync::broadcast;
 
@@ -54,7 +53,7 @@ pub(crate) enum Message {
     /// The driver has something to say to people.
     Warning(String),
     /// A new plan is ready.
-    Rebuilt { from: Time, rebuilt: Rebuilt },
+    Rebuilt(Rebuilt),
     /// Part of the journal is on the disk, or cannot be brought there.
     Synced { ticket: Ticket, result: Result<(), String> },
     /// Somebody wants to know how things are.
@@ -140,19 +139,15 @@ impl Desk {
         let mut events: Vec<(String, EventId)> = Vec::new();
         for name in names {
             let why = match self.shared.events.get(&normal_name(&name)) {
-                None => "there is no such event in this mission".to_string(),
-                Some(event) if !self.shared.contingent[event.index()] => {
-                    "it is not Nature's to decide: kirk dispatches it".to_string()
-                }
-                Some(event) if self.shared.heard[event.index()].load(Ordering::Acquire) => {
-                    "it was heard before".to_string()
-                }
+                None => Why::UnknownEvent,
+                Some(event) if !self.shared.contingent[event.index()] => Why::NotNatures,
+                Some(event) if self.shared.heard[event.index()].load(Ordering::Acquire) => Why::HeardBefore,
                 Some(event) => {
                     events.push((name, *event));
                     continue;
                 }
             };
-            answer.ignored.push(Ignored { event: name, why });
+            answer.ignored.push(Ignored { event: name, why: why.to_string() });
         }
         if events.is_empty() {
             return reply(answer);
@@ -175,8 +170,7 @@ impl Desk {
     fn tell_ignored(&self, arrived: Time, Ignored { event, why }: &Ignored) {
         let mut told = self.shared.ignored.lock().unwrap_or_else(PoisonError::into_inner);
         if told.len() < MOST_IGNORED && told.insert((normal_name(event), why.clone())) {
-            let at = seconds(Duration::from_micros(arrived.as_micros()));
-            self.tell(Happening::Ignored { at, event: event.clone(), why: why.clone() });
+            self.tell(Happening::Ignored { at: arrived, event: event.clone(), why: why.clone() });
         }
     }
 
@@ -218,8 +212,8 @@ impl Desk {
         let _ = self.inbox.send(Message::Warning(text));
     }
 
-    pub(crate) fn rebuilt(&self, from: Time, rebuilt: Rebuilt) {
-        let _ = self.inbox.send(Message::Rebuilt { from, rebuilt });
+    pub(crate) fn rebuilt(&self, rebuilt: Rebuilt) {
+        let _ = self.inbox.send(Message::Rebuilt(rebuilt));
     }
 
     pub(crate) fn synced(&self, ticket: Ticket, result: Result<(), String>) {

@@ -2,9 +2,8 @@
 
 use std::time::Duration as Real;
 
-use kirk_network::json::seconds;
-use kirk_network::{Duration, Time};
-use kirk_runtime::{Execution, Failure};
+use kirk_network::Time;
+use kirk_runtime::{Execution, Failure, Reason};
 
 use crate::driver::shell;
 
@@ -15,8 +14,8 @@ const LIMIT: Real = Real::from_secs(60);
 pub(crate) fn stopped(execution: &Execution, now: Time, reason: &str) -> Failure {
     Failure {
         event: execution.rows.last().map_or(execution.program.clone(), |row| row.event.clone()),
-        time: seconds(Duration::from_micros(now.as_micros())),
-        reason: "stopped".to_string(),
+        time: now,
+        reason: Reason::Stopped,
         detail: format!("the mission was stopped: {reason}"),
     }
 }
@@ -26,7 +25,7 @@ pub(crate) fn unrecorded(execution: &Execution, detail: &str) -> Failure {
     Failure {
         event: execution.rows.last().map_or(execution.program.clone(), |row| row.event.clone()),
         time: execution.makespan,
-        reason: "journal-failed".to_string(),
+        reason: Reason::JournalFailed,
         detail: format!("all was executed, but that is not recorded: {detail}"),
     }
 }
@@ -38,9 +37,9 @@ pub(crate) fn tell(command: &str, program: &str, failure: &Failure) {
         let mut command = shell(command);
         command
             .env("KIRK_PROGRAM", program)
-            .env("KIRK_REASON", &failure.reason)
+            .env("KIRK_REASON", failure.reason.word())
             .env("KIRK_EVENT", &failure.event)
-            .env("KIRK_TIME", failure.time.0.to_string())
+            .env("KIRK_TIME", failure.time.to_string())
             .env("KIRK_DETAIL", &failure.detail);
         if let Ok(mut child) = command.spawn() {
             let _ = tokio::time::timeout(LIMIT, child.wait()).await;

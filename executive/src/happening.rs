@@ -1,6 +1,6 @@
 //! What happens in a mission, for those who watch: the stream of `GET /events`, the live timetable, the lines on a terminal.
 
-use kirk_network::json::Seconds;
+use kirk_network::Time;
 use kirk_runtime::{Execution, Row};
 use serde::Serialize;
 
@@ -11,27 +11,27 @@ pub enum Happening {
     /// An event was handed over to the driver.
     Sent {
         /// When, in seconds after the start.
-        at: Seconds,
+        at: Time,
         /// The event.
         event: String,
         /// The dispatch.
         id: String,
         /// When it was due.
-        due: Seconds,
+        due: Time,
         /// 1 for the first.
         attempt: u32,
     },
     /// An event was fixed: dispatched (and confirmed), observed, buffered, imagined. One row for each name.
     Fixed {
         /// When it was known, in seconds after the start.
-        at: Seconds,
+        at: Time,
         /// As in the record of the execution.
         rows: Vec<Row>,
     },
     /// The driver failed to execute an event; it is tried again while its window is open.
     Failed {
         /// When, in seconds after the start.
-        at: Seconds,
+        at: Time,
         /// The dispatch.
         id: String,
         /// Why.
@@ -40,21 +40,21 @@ pub enum Happening {
     /// Something a person should know: not all is as it should be.
     Warning {
         /// When, in seconds after the start.
-        at: Seconds,
+        at: Time,
         /// A sentence.
         text: String,
     },
     /// Something a person may want to know: how news was taken.
     Note {
         /// When, in seconds after the start.
-        at: Seconds,
+        at: Time,
         /// A sentence.
         text: String,
     },
     /// News was of no use. The same is told once.
     Ignored {
         /// When it arrived, in seconds after the start.
-        at: Seconds,
+        at: Time,
         /// The event, as it was called.
         event: String,
         /// Why.
@@ -63,7 +63,7 @@ pub enum Happening {
     /// The mission is over.
     Over {
         /// When, in seconds after the start.
-        at: Seconds,
+        at: Time,
         /// The record.
         execution: Execution,
     },

@@ -20,7 +20,7 @@
 //! let ready = begin(mission, options, None, said).expect("nothing to open");
 //! // Nobody says that the drive is over, so at 11 it must be.
 //! let ended = ready.run(false);
-//! assert_eq!(ended.execution.makespan.0.to_string(), "11");
+//! assert_eq!(ended.execution.makespan.to_string(), "11");
 //! ```
 //!
 //! # The way through

@@ -6,8 +6,8 @@ use std::time::Duration as Real;
 
 use kirk_network::merge::merge;
 use kirk_network::{Duration, Time};
-use kirk_runtime::journal::{Clocks, Journal, Line, Record};
-use kirk_runtime::{Execution, Replay, recover};
+use kirk_runtime::journal::{Clocks, Journal, Line, Record, Trace};
+use kirk_runtime::{Execution, Input, Replay, recover};
 
 use crate::clock::{Clock, clocks};
 use crate::driver::Said;
@@ -40,7 +40,7 @@ pub fn resume(
     let recovered = || recover(&journal).map_err(|bad| format!("`{}`, {bad}", path.display()));
     let over =
         |replayed: Replay| Resumption::Over(Box::new(replayed.executive.execution(replayed.at, false)));
-    if matches!(journal.lines.last(), Some(Line { record: Record::End { .. }, .. })) {
+    if matches!(journal.lines.last(), Some(Line { record: Record::Out(Trace::End { .. }), .. })) {
         return recovered().map(over);
     }
     let start = &journal.start;
@@ -65,14 +65,17 @@ pub fn resume(
         // The records of what left may be lost, not those of what was going to: the driver is asked.
         unsent.clear();
         if let Some(due) = ahead.filter(|&due| due <= now) {
-            file.push(&Line::new(due, Record::Timeout {}));
-            executive.handle_timeout(due);
+            let due_then = Input::Timeout {};
+            file.push(&Line::new(due, Record::In(due_then.clone())));
+            executive.handle(due, due_then);
             // It may have left already: it is handed over again with all the rest.
             while executive.poll_output().is_some() {}
         }
     }
-    file.push(&Line::new(now, Record::Resumed { clocks, unsent: unsent.clone() }));
-    executive.handle_resumed(now, &unsent);
+    let back = Input::Resumed { unsent };
+    file.push(&Line::new(now, Record::Out(Trace::Back { clocks })));
+    file.push(&Line::new(now, Record::In(back.clone())));
+    executive.handle(now, back);
     make(executive, options, hall, Some(file), &start.run, said, true)
         .map(|ready| Resumption::Ready(Box::new(ready)))
 }
@@ -104,9 +107,9 @@ enum Since {
 fn moment(journal: &Journal, options: &Options, at: Option<Time>) -> Result<Moment, String> {
     let (mut anchor, mut anchored, mut last) = (&journal.start.clocks, Time::ZERO, Time::ZERO);
     for line in &journal.lines {
-        last = last.max(line.time());
-        if let Record::Resumed { clocks, .. } | Record::Began { clocks } = &line.record {
-            (anchor, anchored) = (clocks, line.time());
+        last = last.max(line.at);
+        if let Record::Out(Trace::Back { clocks } | Trace::Began { clocks }) = &line.record {
+            (anchor, anchored) = (clocks, line.at);
         }
     }
     if let Some(clock) = before_zero(options, journal, anchor) {
@@ -136,10 +139,10 @@ fn moment(journal: &Journal, options: &Options, at: Option<Time>) -> Result<Mome
 /// The clock of a mission that was interrupted before it began. `anchor` is what the clocks of the machine said, or will say, at
 /// time zero, as far as the journal knows.
 fn before_zero(options: &Options, journal: &Journal, anchor: &Clocks) -> Option<Clock> {
-    let began = || journal.lines.iter().any(|line| matches!(line.record, Record::Began { .. }));
+    let began = || journal.lines.iter().any(|line| matches!(line.record, Record::Out(Trace::Began { .. })));
     match options.zero {
         Zero::DriverConfirms { .. } if !began() => Some(Clock::standing(options.speed)),
-        Zero::At(_) if journal.lines.iter().all(|line| line.time() == Time::ZERO) => {
+        Zero::At(_) if journal.lines.iter().all(|line| line.at == Time::ZERO) => {
             let now = clocks();
             let rebooted = now.rebooted_since(anchor);
             let left =

@@ -9,10 +9,9 @@ use std::collections::{BTreeMap, HashMap, HashSet, VecDeque};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration as Real, Instant};
 
-use kirk_network::json::{Seconds, seconds};
 use kirk_network::{Duration, EventId, Time};
-use kirk_runtime::journal::{Line, Record};
-use kirk_runtime::{Answer, Execution, Executive, Output, Replanned, Sending};
+use kirk_runtime::journal::{Line, Record, Trace};
+use kirk_runtime::{Answer, Execution, Executive, Handled, Input, Output, Reason, Sending, Why};
 
 use crate::clock::Clock;
 use crate::desk::{AnswerNews, Desk, Ignored, Message, Reply, Ticket};
@@ -91,7 +90,7 @@ impl Ready {
             execution.outcome = kirk_runtime::Outcome::Failed;
             execution.failure = Some(failure::unrecorded(&execution, detail));
         }
-        work.desk.tell(Happening::Over { at: at(now), execution: execution.clone() });
+        work.desk.tell(Happening::Over { at: now, execution: execution.clone() });
         if let Some(driver) = work.driver.take() {
             driver.end(execution.clone());
         }
@@ -124,7 +123,7 @@ struct Loop {
     /// How long that can take, really.
     answers_within: Real,
     /// News of no use that was recorded: by event and reason.
-    ignored: HashSet<(String, String)>,
+    ignored: HashSet<(String, Why)>,
     /// How many warnings of the driver were recorded.
     warnings: u32,
     lateness: Lateness,
@@ -188,7 +187,7 @@ impl Loop {
                 "stopping as soon as the driver has answered for {}; stop again to leave at once",
                 names.join(", ")
             );
-            self.desk.tell(Happening::Warning { at: at(self.clock.now()), text });
+            self.desk.tell(Happening::Warning { at: self.clock.now(), text });
         }
         while !self.with_driver.is_empty() && !self.hurried && !self.executive.is_over() {
             match inbox.recv_timeout(until.saturating_duration_since(Instant::now())) {
@@ -199,12 +198,17 @@ impl Loop {
     }
 
     fn timeout(&mut self, now: Time) {
-        let before = self.executive.version();
-        self.executive.handle_timeout(now);
-        if self.executive.version() != before {
-            self.record(now, Record::Timeout {});
-        }
+        self.happens(now, Input::Timeout {});
         self.perform();
+    }
+
+    /// Something happens to the executive, and what belongs in the journal of it is put there.
+    fn happens(&mut self, at: Time, input: Input) -> Handled {
+        let handled = self.executive.handle(at, input);
+        if let Some(input) = &handled.record {
+            self.record(at, Record::In(input.clone()));
+        }
+        handled
     }
 
     fn take(&mut self, message: Message) {
@@ -214,53 +218,35 @@ impl Loop {
                 self.news(arrived, events, answer, reply);
                 now = arrived;
             }
-            // A driver may say what it likes; only what is ours is worth a record.
-            Message::Executed { id, .. } | Message::Failed { id, .. } if !self.executive.is_order(&id) => {}
             Message::Executed { id, ago } => {
                 let micros =
                     |ago: f64| self.clock.mission_micros((ago * 1e6) as i64).clamp(0, now.as_micros());
                 let ago = ago.map(|ago| Duration::from_micros(micros(ago)));
                 self.with_driver.remove(&id);
-                let before = self.executive.version();
-                self.executive.handle_executed(now, &id, ago);
-                // Said again it is no news.
-                if self.executive.version() != before {
-                    self.record(now, Record::Executed { id, ago: ago.map(seconds) });
+                // A driver may say what it likes; said again it is no news.
+                if self.happens(now, Input::Executed { id, ago }).record.is_some() {
                     self.perform();
                     self.sync();
                 }
             }
             Message::Failed { id, reason, doubt } => {
                 self.with_driver.remove(&id);
-                let before = self.executive.version();
-                self.executive.handle_failed(now, &id, &reason, doubt);
-                if self.executive.version() != before {
-                    self.record(now, Record::Failed { id: id.clone(), reason: reason.clone(), doubt });
-                    self.desk.tell(Happening::Failed { at: at(now), id, reason });
+                let failed = Input::Failed { id: id.clone(), reason: reason.clone(), doubt };
+                if self.happens(now, failed).record.is_some() {
+                    self.desk.tell(Happening::Failed { at: now, id, reason });
                     self.perform();
                 }
             }
             Message::Warning(text) => {
                 self.warnings += 1;
                 if self.warnings <= MOST_WARNINGS {
-                    self.record(now, Record::Warning { text: text.clone() });
+                    self.trace(now, Trace::Warning { text: text.clone() });
                 }
-                self.desk.tell(Happening::Warning { at: at(now), text });
+                self.desk.tell(Happening::Warning { at: now, text });
                 self.perform();
             }
-            Message::Rebuilt { from, rebuilt } => {
-                let before = self.executive.version();
-                let from = at(from);
-                match self.executive.handle_rebuilt(now, rebuilt) {
-                    Replanned::Followed(known) => {
-                        self.record(now, Record::Rebuilt { from, known: Some(known) });
-                    }
-                    Replanned::NoPlan => self.record(now, Record::Rebuilt { from, known: None }),
-                    Replanned::TooLate if self.executive.version() != before => {
-                        self.record(now, Record::Timeout {});
-                    }
-                    Replanned::TooLate => {}
-                }
+            Message::Rebuilt(rebuilt) => {
+                self.happens(now, Input::rebuilt(rebuilt));
                 self.perform();
             }
             Message::Synced { ticket, result: Ok(()) } => {
@@ -290,25 +276,13 @@ impl Loop {
         reply: Reply<AnswerNews>,
     ) {
         for (name, event) in events {
-            let label = self.executive.network().label(event).to_string();
-            let before = self.executive.version();
-            match self.executive.handle_news(arrived, event) {
+            let input = Input::news(self.executive.network(), event);
+            match self.happens(arrived, input).answer {
                 Answer::Accepted => {
-                    self.record(arrived, Record::News { event: label });
                     self.desk.set_heard(event);
                     answer.accepted.push(name);
                 }
-                Answer::Ignored(why) => {
-                    if self.executive.version() != before {
-                        // What was due before it was done all the same.
-                        self.record(just_before(arrived), Record::Timeout {});
-                        self.record(arrived, Record::Timeout {});
-                    }
-                    if self.ignored.insert((label, why.clone())) {
-                        self.record(arrived, Record::Ignored { event: name.clone(), why: why.clone() });
-                    }
-                    answer.ignored.push(Ignored { event: name, why });
-                }
+                Answer::Ignored(why) => answer.ignored.push(self.ignored(arrived, name, why)),
             }
         }
         self.perform();
@@ -317,11 +291,21 @@ impl Loop {
         self.let_leave();
     }
 
+    /// Records that news was of no use, of every event and reason once.
+    fn ignored(&mut self, arrived: Time, event: String, why: Why) -> Ignored {
+        let ignored = Ignored { why: why.to_string(), event };
+        if self.ignored.insert((ignored.event.to_lowercase(), why)) {
+            let Ignored { event, why } = ignored.clone();
+            self.trace(arrived, Trace::Ignored { event, why });
+        }
+        ignored
+    }
+
     /// Has what news calls for planned anew, elsewhere.
     fn plan_anew(&mut self, now: Time) {
         if let Some(rebuild) = self.executive.poll_rebuild(now) {
-            let (from, desk) = (rebuild.now(), self.desk.clone());
-            std::thread::spawn(move || desk.rebuilt(from, rebuild.run()));
+            let desk = self.desk.clone();
+            std::thread::spawn(move || desk.rebuilt(rebuild.run()));
         }
     }
 
@@ -338,8 +322,8 @@ impl Loop {
             match output {
                 Output::Send(sending) => {
                     let Sending { id, due, attempt, .. } = &sending;
-                    let (id, due, attempt) = (id.clone(), at(*due), *attempt);
-                    self.record(now, Record::Dispatch { id, due, attempt });
+                    let (id, due, attempt) = (id.clone(), *due, *attempt);
+                    self.trace(now, Trace::Dispatch { id, due, attempt });
                     sends.push(sending);
                 }
                 Output::Fixed { event, due } => {
@@ -348,17 +332,17 @@ impl Loop {
                     }
                     let rows = self.executive.rows(event);
                     if !rows.is_empty() {
-                        self.desk.tell(Happening::Fixed { at: at(now), rows });
+                        self.desk.tell(Happening::Fixed { at: now, rows });
                     }
                 }
                 Output::Warning(text) => {
-                    self.record(now, Record::Warning { text: text.clone() });
-                    self.desk.tell(Happening::Warning { at: at(now), text });
+                    self.trace(now, Trace::Warning { text: text.clone() });
+                    self.desk.tell(Happening::Warning { at: now, text });
                 }
-                Output::Note(text) => self.desk.tell(Happening::Note { at: at(now), text }),
+                Output::Note(text) => self.desk.tell(Happening::Note { at: now, text }),
                 Output::Over => {
                     let execution = self.executive.execution(now, false);
-                    self.record(now, Record::End { execution });
+                    self.trace(now, Trace::End { execution });
                 }
             }
         }
@@ -396,11 +380,7 @@ impl Loop {
 
     fn send(&mut self, sending: Sending) {
         let now = self.clock.now();
-        let before = self.executive.version();
-        let leaves = self.executive.handle_sent(now, &sending.id);
-        if self.executive.version() != before {
-            self.record(now, Record::Sent { id: sending.id.clone() });
-        }
+        let leaves = self.happens(now, Input::Sent { id: sending.id.clone() }).is_accepted();
         // The record is there before the driver is told: who resumes knows.
         self.write();
         if !leaves || self.lost.is_some() {
@@ -410,9 +390,9 @@ impl Loop {
         if *attempt == 1 {
             self.lateness.add(now, *due);
         }
-        let (id, event, due, attempt) = (id.clone(), name.clone(), at(*due), *attempt);
+        let (id, event, due, attempt) = (id.clone(), name.clone(), *due, *attempt);
         let known = self.begun_by.as_ref() == Some(&id);
-        self.desk.tell(Happening::Sent { at: at(now), event, id, due, attempt });
+        self.desk.tell(Happening::Sent { at: now, event, id, due, attempt });
         if let Some(driver) = self.driver.as_ref().filter(|_| !known) {
             self.with_driver.insert(sending.id.clone(), sending.name.clone());
             driver.send(sending);
@@ -438,7 +418,7 @@ impl Loop {
             return;
         }
         let mut ahead = self.executive.clone();
-        ahead.handle_timeout(next);
+        ahead.handle(next, Input::Timeout {});
         let mut ids = Vec::new();
         while let Some(output) = ahead.poll_output() {
             if let Output::Send(sending) = output {
@@ -447,7 +427,7 @@ impl Loop {
         }
         ids.retain(|id| !self.ahead.contains_key(id));
         if !ids.is_empty() {
-            self.record(self.clock.now(), Record::Ahead { due: at(next), ids: ids.clone() });
+            self.trace(self.clock.now(), Trace::Ahead { due: next, ids: ids.clone() });
             self.write();
             let ticket = self.sync();
             self.ahead.extend(ids.into_iter().map(|id| (id, ticket)));
@@ -458,6 +438,10 @@ impl Loop {
     fn wait(&self, now: Time, next: Time) -> Real {
         let gap = self.clock.real(now, next);
         if self.journal.is_some() && gap > AHEAD { gap - AHEAD } else { gap }
+    }
+
+    fn trace(&mut self, time: Time, trace: Trace) {
+        self.record(time, Record::Out(trace));
     }
 
     fn record(&mut self, time: Time, record: Record) {
@@ -488,7 +472,8 @@ impl Loop {
         self.journal = None;
         self.outbox.clear();
         self.replies.clear();
-        self.executive.handle_stopped(self.clock.now(), "journal-failed", &detail);
+        let stopped = Input::Stopped { reason: Reason::JournalFailed, detail: detail.clone() };
+        self.executive.handle(self.clock.now(), stopped);
         self.lost = Some(detail);
     }
 
@@ -507,12 +492,4 @@ impl Loop {
         serde_json::to_string(&execution)
             .unwrap_or_else(|error| unreachable!("a record has only strings and numbers: {error}"))
     }
-}
-
-fn just_before(time: Time) -> Time {
-    Time::from_micros(time.as_micros() - 1)
-}
-
-fn at(time: Time) -> Seconds {
-    seconds(Duration::from_micros(time.as_micros()))
 }

@@ -111,7 +111,7 @@ fn possible(executive: &Executive) -> Vec<Possible> {
 #[cfg(test)]
 mod tests {
     use kirk_network::json;
-    use kirk_runtime::{Answer, Patience, Plan, Scope, Settings, Setup, handovers};
+    use kirk_runtime::{Input, Patience, Plan, Scope, Settings, Setup, handovers};
 
     use super::*;
 
@@ -153,11 +153,11 @@ mod tests {
     #[test]
     fn what_has_begun_may_be_heard_when_the_model_says_so() {
         let mut executive = executive(MISSION, false);
-        executive.handle_timeout(second(1));
+        executive.handle(second(1), Input::Timeout {});
         let waiting = ["go dispatched", "scan:start dispatched at 2"];
         assert_eq!(told(&snapshot(&mut executive, second(1), false)), waiting);
 
-        executive.handle_timeout(second(3));
+        executive.handle(second(3), Input::Timeout {});
         let rows = ["go dispatched", "scan:start dispatched"];
         let now = told(&snapshot(&mut executive, second(3), false));
         // The data cannot come before the end of the scan, of which nothing is known yet.
@@ -169,11 +169,12 @@ mod tests {
     #[test]
     fn what_was_heard_is_possible_no_more_and_what_follows_it_is() {
         let mut executive = executive(MISSION, false);
-        executive.handle_timeout(second(3));
+        executive.handle(second(3), Input::Timeout {});
         let end = executive.network().find("scan:end").unwrap();
-        assert_eq!(executive.handle_news(second(16), end), Answer::Accepted);
+        let news = Input::news(executive.network(), end);
+        assert!(executive.handle(second(16), news).is_accepted());
         if let Some(rebuild) = executive.poll_rebuild(second(16)) {
-            executive.handle_rebuilt(second(16), rebuild.run());
+            executive.handle(second(16), Input::rebuilt(rebuild.run()));
         }
         let possible = snapshot(&mut executive, second(16), false).possible;
         let data = Possible { event: "data".to_string(), from: second(19), until: None };
@@ -183,7 +184,7 @@ mod tests {
     #[test]
     fn what_the_driver_has_is_pending_until_it_is_confirmed() {
         let mut executive = executive(MISSION, true);
-        executive.handle_timeout(second(2));
+        executive.handle(second(2), Input::Timeout {});
         let pending = snapshot(&mut executive, second(2), false).pending;
         let expected = Pending {
             name: "scan:start".to_string(),
@@ -194,12 +195,15 @@ mod tests {
         };
         assert_eq!(pending, std::slice::from_ref(&expected));
 
-        executive.handle_failed(second(2), "run/scan:start", "no power", false);
+        executive.handle(
+            second(2),
+            Input::Failed { id: "run/scan:start".into(), reason: "no power".into(), doubt: false },
+        );
         let failed = Pending { again: Some(second(3)), reason: "no power".to_string(), ..expected };
         assert_eq!(snapshot(&mut executive, second(2), false).pending, [failed]);
 
-        executive.handle_timeout(second(3));
-        executive.handle_executed(second(3), "run/scan:start", None);
+        executive.handle(second(3), Input::Timeout {});
+        executive.handle(second(3), Input::Executed { id: "run/scan:start".into(), ago: None });
         let after = snapshot(&mut executive, second(3), false);
         assert_eq!(after.pending, []);
         assert_eq!(after.possible.len(), 1);
@@ -209,7 +213,7 @@ mod tests {
     fn at_the_end_what_was_never_heard_is_shown() {
         let mut executive = executive(MISSION, false);
         while let Some(due) = executive.poll_timeout() {
-            executive.handle_timeout(due);
+            executive.handle(due, Input::Timeout {});
         }
         let over = snapshot(&mut executive, second(200), false);
         assert_eq!((over.outcome, over.possible.len(), &over.next), (Outcome::Completed, 0, &None));

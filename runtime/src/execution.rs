@@ -1,8 +1,10 @@
 //! The record of an execution: what was fixed when, and why, as `kirk-execution/1` says it.
 
-use kirk_network::json::{Seconds, seconds};
-use kirk_network::{Duration, Time};
+use kirk_network::Time;
+use kirk_network::time::Interval;
 use serde::{Deserialize, Serialize};
+
+use crate::input::Reason;
 
 /// The `format` of the record written and read here.
 pub const FORMAT: &str = "kirk-execution/1";
@@ -21,7 +23,7 @@ pub struct Execution {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub failure: Option<Failure>,
     /// When the last event was over.
-    pub makespan: Seconds,
+    pub makespan: Time,
     /// The seed of a simulation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
@@ -48,9 +50,9 @@ pub struct Failure {
     /// The event at which it failed.
     pub event: String,
     /// When it failed.
-    pub time: Seconds,
-    /// One word: `missed-window`, `not-controllable`, `driver-failed`, `broken-model`, `journal-failed`, `stopped`.
-    pub reason: String,
+    pub time: Time,
+    /// Why, in one word.
+    pub reason: Reason,
     /// A sentence for people.
     pub detail: String,
 }
@@ -62,18 +64,18 @@ pub struct Row {
     /// The name.
     pub event: String,
     /// When the executive fixed the event; `null` if it never needed to.
-    pub time: Option<Seconds>,
+    pub time: Option<Time>,
     /// How it came to be fixed.
     pub how: How,
     /// For contingent events: when the news arrived, `null` if it never did.
     #[serde(default, with = "given", skip_serializing_if = "Option::is_none")]
-    pub observed: Option<Option<Seconds>>,
+    pub observed: Option<Option<Time>>,
     /// For contingent events: the interval in which it must have happened, given all that was heard.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub happened: Option<(Seconds, Seconds)>,
+    pub happened: Option<Interval>,
     /// When it really happened, if that is known (in simulations).
     #[serde(default, rename = "true", skip_serializing_if = "Option::is_none")]
-    pub truth: Option<Seconds>,
+    pub truth: Option<Time>,
 }
 
 /// How an event came to be fixed.
@@ -103,11 +105,6 @@ impl How {
             How::Never => "never",
         }
     }
-}
-
-/// A date in the record.
-pub(crate) fn at(time: Time) -> Seconds {
-    seconds(Duration::from_micros(time.as_micros()))
 }
 
 /// A field that tells `null` from absent.

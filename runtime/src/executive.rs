@@ -2,24 +2,28 @@
 //!
 //! It hands events over to a driver, under an id that stays the same, until the driver confirms them or their window
 //! closes; it answers news; it says when the model is broken, when the mission is over and why it failed. Everything that
-//! happens to it comes in through a `handle_*` method with its time, so a list of those calls is the whole execution: the
-//! [`journal`](crate::journal) is that list.
+//! happens to it is an [`Input`] with its time, so the list of them is the whole execution: the [`journal`](crate::journal) is
+//! that list.
 
 mod checkpoints;
+mod news;
 mod orders;
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::Arc;
 
 use kirk_network::{Duration, EventId, Network, Time};
 
 use crate::activity::Handover;
 use crate::checkpoint::Checkpoint;
-use crate::dispatcher::{Adoption, Dispatch, Dispatcher, Reception, Settings};
-use crate::execution::{Execution, Failure, How, Outcome, Row, at};
+use crate::dispatcher::{Adoption, Dispatch, Dispatcher, Settings};
+use crate::execution::{Execution, Failure, How, Outcome, Row};
+use crate::input::{Answer, Handled, Input, Reason, Why};
 use crate::order::{Order, Patience, State};
 use crate::plan::Plan;
 use crate::rebuild::{Rebuild, Rebuilt};
 use crate::record::{all_over, missed_window, record, row};
+use crate::replay::names;
 
 const MICROSECOND: Duration = Duration::from_micros(1);
 
@@ -27,6 +31,8 @@ const MICROSECOND: Duration = Duration::from_micros(1);
 #[derive(Clone, Debug)]
 pub struct Executive {
     dispatcher: Dispatcher,
+    /// Every name of every event.
+    names: Arc<BTreeMap<String, EventId>>,
     program: String,
     /// What the ids of its dispatches begin with.
     run: String,
@@ -59,18 +65,6 @@ struct Broken {
     arrived: Time,
     /// What is wrong with it, in words.
     said: String,
-}
-
-/// What became of a new plan.
-#[derive(Clone, Debug)]
-pub enum Replanned {
-    /// It is followed from now on. That belongs in the journal with what was known, so that nobody has to make the plans before
-    /// it once more.
-    Followed(Box<Checkpoint>),
-    /// There is none, which belongs in the journal, too.
-    NoPlan,
-    /// It came too late to be of use.
-    TooLate,
 }
 
 /// What is to be done, or told.
@@ -123,15 +117,6 @@ pub struct Pending {
     pub again: Option<Time>,
     /// Why the last attempt that failed did; empty if none has.
     pub reason: String,
-}
-
-/// What became of news.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Answer {
-    /// It is known now.
-    Accepted,
-    /// It is of no use, and why.
-    Ignored(String),
 }
 
 /// How an executive is set up.
@@ -188,6 +173,7 @@ impl Executive {
         Executive {
             lateness: settings.lateness,
             slack: settings.lead.checked_add(settings.lateness).unwrap_or(settings.lead),
+            names: Arc::new(names(network).map(|(name, event)| (name.to_string(), event)).collect()),
             dispatcher,
             program,
             run,
@@ -231,8 +217,55 @@ impl Executive {
         self.failure.as_ref()
     }
 
-    /// Does everything that is due by now.
-    pub fn handle_timeout(&mut self, now: Time) {
+    /// Takes what happens, and does everything that is due by then.
+    ///
+    /// The times of all inputs are in order, but news and confirmations may be of a time shortly before something else was done.
+    pub fn handle(&mut self, now: Time, input: Input) -> Handled {
+        let before = self.version();
+        let mut record = input;
+        let answer = match &mut record {
+            _ if self.over => Answer::Ignored(Why::Over),
+            Input::Timeout {} => {
+                self.timeout(now);
+                Answer::Accepted
+            }
+            Input::News { event } => match self.names.get(event.as_str()) {
+                Some(&event) => self.news(now, event),
+                None => Answer::Ignored(Why::UnknownEvent),
+            },
+            Input::Sent { id } => self.sent(now, id),
+            Input::Executed { id, ago } => self.executed(now, id, *ago),
+            Input::Failed { id, reason, doubt } => self.failed(now, id, reason, *doubt),
+            Input::Rebuilt { from, known, made } => {
+                let made = made.take().map(|made| *made);
+                let rebuilt = made.or_else(|| self.poll_rebuild(*from).map(Rebuild::run));
+                let answer = self.rebuilt(now, rebuilt, known);
+                if answer != Answer::Accepted {
+                    record = Input::Timeout {};
+                }
+                answer
+            }
+            Input::Resumed { unsent } => {
+                self.resumed(now, unsent);
+                Answer::Accepted
+            }
+            Input::Stopped { reason, detail } => {
+                self.fail(self.network().origin(), now, *reason, detail.clone());
+                Answer::Accepted
+            }
+        };
+        // That there is no plan changes nothing, but it is not to be asked again.
+        let changed = self.version() != before
+            || matches!((&answer, &record), (Answer::Accepted, Input::Rebuilt { .. }));
+        Handled { answer, record: changed.then_some(record) }
+    }
+
+    /// True if a dispatch is with the driver or was.
+    pub fn is_order(&self, id: &str) -> bool {
+        self.orders.iter().any(|order| order.id == id)
+    }
+
+    fn timeout(&mut self, now: Time) {
         if self.over {
             return;
         }
@@ -243,129 +276,36 @@ impl Executive {
         }
     }
 
-    /// Takes news that arrived at a time, usually now.
-    pub fn handle_news(&mut self, arrived: Time, event: EventId) -> Answer {
-        let name = self.network().label(event).to_string();
-        if self.dispatcher.known(event).observed.is_some() || self.held.iter().any(|held| held.1 == event) {
-            return Answer::Ignored(format!("`{name}` was heard before"));
-        }
-        if self.network().link_of(event).is_none() {
-            return Answer::Ignored(format!("`{name}` is not Nature's to decide: kirk dispatches it"));
-        }
-        if self.over {
-            return Answer::Ignored("the mission is over".to_string());
-        }
-        // What was due before comes before; at one time Nature comes first.
-        self.handle_timeout(Time::from_micros(arrived.as_micros() - 1));
-        if self.dispatcher.is_in_flight(self.dispatcher.root(event)) {
-            self.held.push((arrived, event));
-            self.changes += 1;
-            return Answer::Accepted;
-        }
-        let answer = self.hear(arrived, event);
-        self.handle_timeout(arrived);
-        answer
-    }
-
-    /// True if a dispatch is with the driver or was.
-    pub fn is_order(&self, id: &str) -> bool {
-        self.orders.iter().any(|order| order.id == id)
-    }
-
-    /// The driver has executed what was handed over, `ago` before now if it says so.
-    pub fn handle_executed(&mut self, now: Time, id: &str, ago: Option<Duration>) {
-        let Some(order) = self.orders.iter_mut().find(|order| order.id == id) else { return };
-        if self.over || order.state == State::Done {
-            return;
-        }
-        order.state = State::Done;
-        if let Some(at) = ago.and_then(|ago| now.as_micros().checked_sub(ago.as_micros())) {
-            order.started = Time::from_micros(at).max(order.first_sent);
-        }
-        self.changes += 1;
-        let event = order.event;
-        let of_event = || self.orders.iter().filter(|order| order.event == event);
-        if of_event().all(|order| order.state == State::Done) {
-            let started = of_event().map(|order| order.started).max().unwrap_or(now);
-            self.dispatcher.handle_executed(now, event, started);
-        }
-        self.settle(now);
-        self.hear_held(now);
-    }
-
-    /// Takes the news that had to wait for what was in flight.
-    fn hear_held(&mut self, now: Time) {
-        for (arrived, event) in std::mem::take(&mut self.held) {
-            if self.dispatcher.is_in_flight(self.dispatcher.root(event)) {
-                self.held.push((arrived, event));
-            } else {
-                self.hear(arrived, event);
-            }
-        }
-        self.dispatcher.handle_timeout(now);
-        self.settle(now);
-    }
-
-    /// The driver could not execute what was handed over, or in case of `doubt` nobody knows. It is tried again while that
-    /// makes sense.
-    pub fn handle_failed(&mut self, now: Time, id: &str, reason: &str, doubt: bool) {
-        let patience = self.patience;
-        let Some(order) = self.orders.iter_mut().find(|order| order.id == id) else { return };
-        if self.over || !matches!(order.state, State::Sent) {
-            return;
-        }
-        order.failed(now, reason, patience);
-        // One that says no had not done it before either.
-        order.doubtful = doubt;
-        self.changes += 1;
-        self.settle(now);
-    }
-
-    /// Somebody or something outside ends the mission.
-    pub fn handle_stopped(&mut self, now: Time, reason: &str, detail: &str) {
-        if !self.over {
-            self.fail(self.network().origin(), now, reason, detail.to_string());
-        }
-    }
-
     /// What is to be planned anew because of news, if anything is.
     pub fn poll_rebuild(&mut self, now: Time) -> Option<Rebuild> {
         if self.over { None } else { self.dispatcher.poll_rebuild(now) }
     }
 
-    /// Goes on with a new plan, or says that it is of no use.
-    pub fn handle_rebuilt(&mut self, now: Time, rebuilt: Rebuilt) -> Replanned {
-        if self.over {
-            return Replanned::TooLate;
-        }
+    /// Goes on with a new plan, if it is of use, and puts down what was known.
+    fn rebuilt(
+        &mut self,
+        now: Time,
+        rebuilt: Option<Rebuilt>,
+        record: &mut Option<Box<Checkpoint>>,
+    ) -> Answer {
+        let Some(rebuilt) = rebuilt else { return Answer::Ignored(Why::NoSuchPlan) };
         let current = self.dispatcher.is_current(&rebuilt);
         // What is known before anything follows from the plan.
         let known = (current && rebuilt.is_plan()).then(|| Box::new(self.checkpoint()));
-        let replanned = match (self.dispatcher.handle_rebuilt(rebuilt), known) {
-            (Adoption::Followed, Some(known)) => {
-                self.mend();
-                Replanned::Followed(known)
-            }
-            (Adoption::TooLate, _) => Replanned::TooLate,
-            (Adoption::NoPlan | Adoption::Followed, _) => {
+        let adoption = self.dispatcher.handle_rebuilt(rebuilt);
+        *record = known.filter(|_| adoption == Adoption::Followed);
+        match adoption {
+            Adoption::Followed => self.mend(),
+            Adoption::TooLate => {}
+            Adoption::NoPlan => {
                 if let Some(Broken { event, arrived, said }) = self.broken.pop() {
                     let detail = format!("{said}, and the rest cannot be guaranteed any more");
-                    self.fail(event, arrived, "broken-model", detail);
+                    self.fail(event, arrived, Reason::BrokenModel, detail);
                 }
-                Replanned::NoPlan
             }
-        };
-        self.handle_timeout(now);
-        replanned
-    }
-
-    /// There is a plan with all the news, whatever the model says.
-    fn mend(&mut self) {
-        for Broken { said, .. } in std::mem::take(&mut self.broken) {
-            self.outputs.push_back(Output::Warning(format!(
-                "{said}; the rest can still be guaranteed, the mission goes on"
-            )));
         }
+        self.timeout(now);
+        if adoption == Adoption::TooLate { Answer::Ignored(Why::NoSuchPlan) } else { Answer::Accepted }
     }
 
     /// What is to be done or told next.
@@ -373,7 +313,7 @@ impl Executive {
         self.outputs.pop_front()
     }
 
-    /// When to call [`Executive::handle_timeout`] if nothing is heard before.
+    /// When to call [`Input::Timeout`] is to be handled if nothing is heard before.
     pub fn poll_timeout(&mut self) -> Option<Time> {
         if self.over {
             return None;
@@ -441,57 +381,9 @@ impl Executive {
     /// When the last thing happened, or surely had.
     fn end(&self) -> Time {
         if let Some(failure) = &self.failure {
-            return Time::from_micros(failure.time.0.as_micros());
+            return failure.time;
         }
         all_over(&self.dispatcher)
-    }
-
-    fn hear(&mut self, arrived: Time, event: EventId) -> Answer {
-        let name = self.network().label(event).to_string();
-        match self.dispatcher.handle_observation(arrived, event) {
-            Reception::Accepted => {
-                self.tell_rounding(arrived, event);
-                Answer::Accepted
-            }
-            Reception::Repeated => Answer::Ignored(format!("`{name}` was heard before")),
-            Reception::NotContingent => {
-                Answer::Ignored(format!("`{name}` is not Nature's to decide: kirk dispatches it"))
-            }
-            Reception::Impossible { earliest: None, .. } => {
-                let start = self.network().label(self.dispatcher.root(event));
-                Answer::Ignored(format!("`{name}` cannot have happened: `{start}` has not been executed"))
-            }
-            // From where to plan anew is known when nothing is in flight.
-            Reception::Impossible { .. } if self.dispatcher.has_in_flight() => {
-                self.held.push((arrived, event));
-                self.changes += 1;
-                Answer::Accepted
-            }
-            Reception::Impossible { earliest: Some(earliest), latest } => {
-                let window = match latest {
-                    Some(latest) if arrived > latest => format!("too late: it was to come by {latest} s"),
-                    _ => format!("too early: it was to come from {earliest} s on"),
-                };
-                let said = format!("the model is broken: news of `{name}` at {arrived} s is {window}");
-                self.dispatcher.handle_impossible(arrived, event);
-                self.broken.push(Broken { event, arrived, said });
-                Answer::Accepted
-            }
-        }
-    }
-
-    /// Says so when news counts as if it had come when the model allows it.
-    fn tell_rounding(&mut self, arrived: Time, event: EventId) {
-        let Some(heard) = self.dispatcher.known(event).observed.filter(|&heard| heard != arrived) else {
-            return;
-        };
-        let (name, slack) = (self.network().label(event), self.slack);
-        let first = if heard < arrived { "the latest" } else { "the earliest" };
-        let text = format!(
-            "news of `{name}` at {arrived} s counts as of {heard} s, {first} the model allows: it is within the tolerance of \
-             {slack} s"
-        );
-        self.outputs.push_back(Output::Note(text));
     }
 
     /// Turns what the dispatcher has decided into orders and outputs, and looks after the orders there are.
@@ -517,7 +409,7 @@ impl Executive {
         }
         if let Some(missed) = self.dispatcher.missed() {
             let failure = missed_window(self.network(), missed);
-            self.fail(missed.event, missed.time, &failure.reason, failure.detail);
+            self.fail(missed.event, missed.time, failure.reason, failure.detail);
         } else if self.unannounced.is_empty()
             && self.held.is_empty()
             && self.orders.iter().all(|order| order.state == State::Done)
@@ -544,42 +436,9 @@ impl Executive {
         }
     }
 
-    /// Until when news may still come that is late by no more than is allowed. A mission that ends before that would say of it
-    /// that it is lost.
-    fn overdue(&self, now: Time) -> Option<Time> {
-        let network = self.network();
-        let unheard = network.contingents().iter().map(|link| link.to);
-        let unheard = unheard.filter(|&event| self.dispatcher.known(event).observed.is_none());
-        let late = unheard.filter_map(|event| self.dispatcher.news_by(event)).filter(|&by| by < now);
-        late.filter_map(|by| by.checked_add(self.slack)).filter(|&until| until >= now).max()
-    }
-
-    /// Says so when news is lost: what was imagined stands, but something is wrong in the world.
-    fn miss_news(&mut self, now: Time) {
-        for (by, event) in std::mem::take(&mut self.awaited) {
-            if self.dispatcher.known(event).observed.is_some() {
-                continue;
-            }
-            if by.checked_add(self.slack).is_none_or(|by| by >= now) {
-                self.awaited.push((by, event));
-                continue;
-            }
-            self.changes += 1;
-            self.outputs.push_back(Output::Warning(format!(
-                "nothing was heard of `{}`, though its news was to come by {by} s: the model is broken, or the news is lost; the \
-                 mission goes on as if it had happened",
-                self.network().label(event)
-            )));
-        }
-    }
-
-    fn fail(&mut self, event: EventId, now: Time, reason: &str, detail: String) {
-        self.failure = Some(Failure {
-            event: self.network().label(event).to_string(),
-            time: at(now),
-            reason: reason.to_string(),
-            detail,
-        });
+    fn fail(&mut self, event: EventId, now: Time, reason: Reason, detail: String) {
+        self.failure =
+            Some(Failure { event: self.network().label(event).to_string(), time: now, reason, detail });
         self.over = true;
         self.changes += 1;
         self.outputs.push_back(Output::Over);

@@ -4,121 +4,85 @@
 //! hexadecimal) is over the checksum of the line before and the JSON, so a line that is damaged, missing or moved is
 //! noticed. The first line says what is executed and how. Lines are only ever added; the last one may be torn.
 //!
-//! Some records are what happened to the executive, in the order it happened; they determine everything. The others are
-//! what came of it, for people, for checking a repetition, and for knowing what had left when the journal ends.
+//! Some records are what happened to the executive ([`Input`]), in the order it happened; they determine everything. The
+//! others are what came of it, for people, for checking a repetition, and for knowing what had left when the journal ends.
 
 mod text;
 
 use std::collections::{HashMap, HashSet};
 
-use kirk_network::json::{self, Seconds, seconds};
+use kirk_network::json;
 use kirk_network::model::Name;
 use kirk_network::{Duration, Event, EventId, Network, Time};
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 
 use crate::activity::Handover;
-use crate::checkpoint::Checkpoint;
 use crate::dispatcher::{Settings, Strategy};
 use crate::execution::Execution;
 use crate::executive::{Executive, Setup};
+use crate::input::Input;
 use crate::order::Patience;
 use crate::plan::{NoPlan, Plan};
 use crate::replay::names;
 pub use text::{BadJournal, Journal, is_journal, read, write};
 
 /// The `format` of the journals written and read here.
-pub const FORMAT: &str = "kirk-journal/2";
+pub const FORMAT: &str = "kirk-journal/3";
 
 /// One line.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Line {
-    /// When, in seconds after the start of the mission.
-    pub at: Seconds,
+    /// When.
+    pub at: Time,
     /// What.
     pub record: Record,
 }
 
-/// What happened.
+/// What is on record.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Record {
     /// The mission begins: the first line, and no other.
     Start(Box<Start>),
-    /// Something was due.
-    Timeout {},
-    /// News arrived, and was of use.
-    News {
-        /// The event.
-        event: String,
-    },
-    /// The driver confirmed an event.
-    Executed {
-        /// The dispatch.
-        id: String,
-        /// How long before it was executed, if the driver says so.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        ago: Option<Seconds>,
-    },
-    /// The driver failed to execute an event.
-    Failed {
-        /// The dispatch.
-        id: String,
-        /// Why.
-        reason: String,
-        /// True if it may have executed it all the same.
-        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-        doubt: bool,
-    },
-    /// The answer was there to how to go on with what is known.
-    Rebuilt {
-        /// The time from which it plans.
-        from: Seconds,
-        /// Came of it: what was known by then that the last such record did not know; nothing if there is no plan.
-        known: Option<Box<Checkpoint>>,
-    },
+    /// What happened to the executive.
+    In(Input),
+    /// What came of it, or happened around it.
+    Out(Trace),
+}
+
+/// What leads to no other state of the executive.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Trace {
     /// The clock of the mission started: it had stood at zero until the driver confirmed.
     Began {
         /// What the clocks say at time zero.
         clocks: Clocks,
     },
     /// The executive was away and is back.
-    Resumed {
+    Back {
         /// What the clocks say.
         clocks: Clocks,
-        /// Dispatches that had not left.
-        unsent: Vec<String>,
     },
-    /// The mission was ended from outside.
-    Stopped {
-        /// One word.
-        reason: String,
-        /// A sentence.
-        detail: String,
-    },
-    /// Came of it: an event is to be handed over.
+    /// An event is to be handed over.
     Dispatch {
         /// The dispatch.
         id: String,
         /// When it is due.
-        due: Seconds,
+        due: Time,
         /// 1 for the first.
         attempt: u32,
     },
-    /// A dispatch leaves now, or would if its window were still open.
-    Sent {
-        /// The dispatch.
-        id: String,
-    },
-    /// Came of it: this is what will be due then, unless something happens before. It is on disk before it leaves.
+    /// This is what will be due then, unless something happens before. It is on disk before it leaves.
     Ahead {
         /// When.
-        due: Seconds,
+        due: Time,
         /// The dispatches.
         ids: Vec<String>,
     },
-    /// Came of it: something a person should know.
+    /// Something a person should know.
     Warning {
         /// A sentence.
         text: String,
@@ -130,7 +94,7 @@ pub enum Record {
         /// Why.
         why: String,
     },
-    /// Came of it: the mission is over.
+    /// The mission is over.
     End {
         /// What became of it.
         execution: Execution,
@@ -152,11 +116,11 @@ pub struct Start {
     /// True if news that says more than the plan assumed is planned with.
     pub optimistic: bool,
     /// How long before they are due events are handed over.
-    pub lead: Seconds,
+    pub lead: Duration,
     /// Up to how late an event counts as executed when it was due.
-    pub lateness: Seconds,
+    pub lateness: Duration,
     /// How long to wait before trying again, at first and at most.
-    pub patience: (Seconds, Seconds),
+    pub patience: (Duration, Duration),
     /// How many times faster than real time it is executed.
     pub speed: f64,
     /// What somebody is to carry out: names and companions.
@@ -205,9 +169,9 @@ impl Start {
             program: setup.program.clone(),
             run: setup.run.clone(),
             optimistic: setup.settings.strategy == Strategy::Optimistic,
-            lead: seconds(setup.settings.lead),
-            lateness: seconds(setup.settings.lateness),
-            patience: (seconds(setup.patience.first), seconds(setup.patience.most)),
+            lead: setup.settings.lead,
+            lateness: setup.settings.lateness,
+            patience: (setup.patience.first, setup.patience.most),
             speed,
             handovers: setup.handovers.iter().map(|h| (h.name.clone(), h.companion.clone())).collect(),
             driver: setup.driver,
@@ -249,8 +213,8 @@ impl Start {
         let handovers = self.handovers.iter().map(handover).collect::<Result<_, String>>()?;
         let settings = Settings {
             strategy: if self.optimistic { Strategy::Optimistic } else { Strategy::Buffer },
-            lead: self.lead.0,
-            lateness: self.lateness.0,
+            lead: self.lead,
+            lateness: self.lateness,
             ..Settings::default()
         };
         Ok(Setup {
@@ -259,7 +223,7 @@ impl Start {
             settings,
             handovers,
             driver: self.driver,
-            patience: Patience { first: self.patience.0.0, most: self.patience.1.0 },
+            patience: Patience { first: self.patience.0, most: self.patience.1 },
         })
     }
 
@@ -299,12 +263,7 @@ impl Clocks {
 impl Line {
     /// A line at a time.
     pub fn new(at: Time, record: Record) -> Line {
-        Line { at: seconds(Duration::from_micros(at.as_micros())), record }
-    }
-
-    /// Its time.
-    pub fn time(&self) -> Time {
-        Time::from_micros(self.at.0.as_micros())
+        Line { at, record }
     }
 }
 

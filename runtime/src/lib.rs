@@ -16,7 +16,7 @@
 //! // Heard at 2, so B happened at 1, and C may be executed at 6.
 //! let news = Simulation { observations: vec![(b, Time::from_micros(2_000_000))], ..Simulation::default() };
 //! let execution = simulate(&plan, "example", &news).expect("the news is possible");
-//! assert_eq!(execution.makespan.0.to_string(), "6");
+//! assert_eq!(execution.makespan.to_string(), "6");
 //! assert!(verify(&network, &execution).is_empty());
 //! ```
 //!
@@ -52,6 +52,7 @@ pub mod checkpoint;
 pub mod dispatcher;
 pub mod execution;
 pub mod executive;
+pub mod input;
 pub mod journal;
 pub mod knowledge;
 mod measured;
@@ -68,7 +69,8 @@ pub use activity::{Handover, Scope, handovers, leave_out_natures, merge_companio
 pub use checkpoint::Checkpoint;
 pub use dispatcher::{Adoption, Dispatch, Dispatcher, Missed, Reception, Settings, Strategy};
 pub use execution::{Execution, Failure, How, Outcome, Row};
-pub use executive::{Answer, Executive, Output, Pending, Replanned, Sending, Setup};
+pub use executive::{Executive, Output, Pending, Sending, Setup};
+pub use input::{Answer, Handled, Input, Reason, Why};
 pub use journal::{BadJournal, Clocks, Journal};
 pub use nature::{Impossible, Temper};
 pub use order::Patience;

@@ -1,10 +1,11 @@
 //! From a dispatcher to the record of its execution.
 
-use kirk_network::json::Seconds;
-use kirk_network::{Duration, EventId, Network, Time};
+use kirk_network::time::Interval;
+use kirk_network::{EventId, Network, Time};
 
 use crate::dispatcher::{Dispatcher, Missed};
-use crate::execution::{Execution, FORMAT, Failure, How, Outcome, Row, at};
+use crate::execution::{Execution, FORMAT, Failure, How, Outcome, Row};
+use crate::input::Reason;
 
 /// The record of an execution up to `end`; `truth` where it is known. At one time what must not come after something else
 /// comes before it.
@@ -39,7 +40,7 @@ pub(crate) fn record(
         program: program.to_string(),
         outcome: if failure.is_some() { Outcome::Failed } else { Outcome::Completed },
         failure,
-        makespan: at(end),
+        makespan: end,
         seed: None,
         rows: rows.into_iter().map(|(_, row)| row).collect(),
     }
@@ -65,18 +66,18 @@ pub(crate) fn row(
     let known = dispatcher.known(event);
     let contingent = dispatcher.network().link_of(event).is_some();
     let (time, how, place) = match known.fixed {
-        Some((time, how)) => (Some(at(time)), how, time.as_micros()),
+        Some((time, how)) => (Some(time), how, time.as_micros()),
         None if contingent => (None, How::Never, happened.map_or(i64::MAX, |(_, high)| high)),
         None => return None,
     };
-    let interval = |(low, high): (i64, i64)| (at(Time::from_micros(low)), at(Time::from_micros(high)));
+    let interval = |(low, high): (i64, i64)| Interval::new(Time::from_micros(low), Time::from_micros(high));
     let row = Row {
         event: String::new(),
         time,
         how,
-        observed: contingent.then(|| known.observed.map(at)),
+        observed: contingent.then_some(known.observed),
         happened: happened.filter(|_| contingent).map(interval),
-        truth: truth.map(at),
+        truth,
     };
     Some((place, row))
 }
@@ -95,10 +96,5 @@ pub(crate) fn missed_window(network: &Network, missed: Missed) -> Failure {
             missed.latest, missed.due
         )
     };
-    Failure {
-        event,
-        time: Seconds(Duration::from_micros(missed.time.as_micros())),
-        reason: "missed-window".into(),
-        detail,
-    }
+    Failure { event, time: missed.time, reason: Reason::MissedWindow, detail }
 }

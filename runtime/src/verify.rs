@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, VecDeque};
 
 use kirk_network::merge::merge;
 use kirk_network::precedence::{precedence, written_pairs};
-use kirk_network::{Bound, EventId, Network};
+use kirk_network::{Bound, EventId, Network, Time};
 
 use crate::execution::{Execution, FORMAT, How, Outcome, Row};
 
@@ -38,7 +38,7 @@ pub fn verify(network: &Network, execution: &Execution) -> Vec<Violation> {
     let network = &merge(network).network;
     let mut verifier = Verifier {
         network,
-        makespan: execution.makespan.0.as_micros(),
+        makespan: execution.makespan.as_micros(),
         facts: vec![None; network.events().len()],
         nature: vec![Vec::new(); network.events().len()],
         latest: Vec::new(),
@@ -127,7 +127,7 @@ impl Verifier<'_> {
 
     /// The rows are in time order, and what is written to precede something else comes before it at one time.
     fn read_order(&mut self, execution: &Execution) {
-        let when = |row: &Row| row.time.or(row.happened.map(|(_, high)| high)).map(|time| time.0.as_micros());
+        let when = |row: &Row| row.time.or(row.happened.map(|happened| happened.latest)).map(Time::as_micros);
         let mut rows: Vec<Option<usize>> = vec![None; self.facts.len()];
         let mut last: Option<(&Row, i64)> = None;
         for (at, row) in execution.rows.iter().enumerate() {
@@ -162,11 +162,11 @@ impl Verifier<'_> {
 
     fn take(&mut self, event: EventId, row: &Row) {
         let fact = Fact {
-            time: row.time.map(|time| time.0.as_micros()),
+            time: row.time.map(Time::as_micros),
             how: row.how,
-            observed: row.observed.flatten().map(|time| time.0.as_micros()),
-            truth: row.truth.map(|time| time.0.as_micros()),
-            happened: row.happened.map(|(low, high)| (low.0.as_micros(), high.0.as_micros())),
+            observed: row.observed.flatten().map(Time::as_micros),
+            truth: row.truth.map(Time::as_micros),
+            happened: row.happened.map(|within| (within.earliest.as_micros(), within.latest.as_micros())),
         };
         if self.facts[event.index()].is_some_and(|other| other != fact) {
             let label = self.network.label(event);

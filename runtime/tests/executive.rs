@@ -18,11 +18,11 @@ use kirk_network::generate::{
     sampling,
 };
 use kirk_network::{Duration, EventId, Network, Time};
-use kirk_runtime::journal::{Clocks, Line, Record, Start, read, write};
+use kirk_runtime::journal::{Clocks, Line, Record, Start, Trace, read, write};
 use kirk_runtime::nature::Nature;
 use kirk_runtime::{
-    Answer, Executive, Outcome, Output, Patience, Plan, Rebuild, Replanned, Scope, Settings, Setup, Strategy,
-    Temper, handovers, recover, replay, verify,
+    Answer, Executive, Handled, Input, Outcome, Output, Patience, Plan, Rebuild, Scope, Settings, Setup,
+    Strategy, Temper, Why, handovers, recover, replay, verify,
 };
 use oracle::order::precedes;
 use oracle::random::{self, Shape};
@@ -179,25 +179,13 @@ impl Life {
                     Some(other) => (now + late).min(other.max(now)),
                     None => now + late,
                 };
-                self.timeout(now);
+                self.happens(now, Input::Timeout {});
             } else if coming == Some(next) {
                 let Reverse((arrived, coming)) = self.coming.pop().unwrap();
                 self.take(now, arrived, coming)?;
             } else if let Some(at) = self.rebuilding.iter().position(|(time, _)| rebuilt == Some(*time)) {
                 let (_, rebuild) = self.rebuilding.remove(at);
-                let from = rebuild.now();
-                let before = self.executive.version();
-                let from = kirk_network::json::seconds(Duration::from_micros(from.as_micros()));
-                match self.executive.handle_rebuilt(Time::from_micros(now), rebuild.run()) {
-                    Replanned::Followed(known) => {
-                        self.record(now, Record::Rebuilt { from, known: Some(known) });
-                    }
-                    Replanned::NoPlan => self.record(now, Record::Rebuilt { from, known: None }),
-                    Replanned::TooLate if self.executive.version() != before => {
-                        self.record(now, Record::Timeout {});
-                    }
-                    Replanned::TooLate => {}
-                }
+                self.happens(now, Input::rebuilt(rebuild.run()));
             }
             self.perform(now, &mut nature)?;
         }
@@ -213,53 +201,41 @@ impl Life {
         if self.executive.dispatcher().is_in_flight(self.executive.dispatcher().root(event)) {
             return;
         }
-        let before = self.executive.version();
-        let answer = self.executive.handle_news(Time::from_micros(now), event);
-        if matches!(answer, Answer::Accepted) {
-            // What was due just before has begun it, and it is broken by now; no matter for this test.
-            self.record(now, Record::News { event: self.network.id(event).to_string() });
-        } else if self.executive.version() != before {
-            self.record(now - 1, Record::Timeout {});
-            self.record(now, Record::Timeout {});
-        }
+        // What was due just before may have begun it, and it is broken by now; no matter for this test.
+        self.happens(now, Input::news(&self.network, event));
     }
 
-    fn timeout(&mut self, now: i64) {
-        let before = self.executive.version();
-        self.executive.handle_timeout(Time::from_micros(now));
-        if self.executive.version() != before {
-            self.record(now, Record::Timeout {});
+    /// Something happens, and is on record.
+    fn happens(&mut self, at: i64, input: Input) -> Handled {
+        let handled = self.executive.handle(Time::from_micros(at), input);
+        if let Some(input) = &handled.record {
+            self.record(at, Record::In(input.clone()));
         }
+        handled
     }
 
     fn take(&mut self, now: i64, arrived: i64, coming: Coming) -> Result<(), String> {
         match coming {
             Coming::News(event) => {
-                let name = self.network.id(event).to_string();
-                match self.executive.handle_news(Time::from_micros(arrived), event) {
-                    Answer::Accepted => self.record(arrived, Record::News { event: name }),
-                    Answer::Ignored(why)
-                        if !self.executive.is_over()
-                            && !why.contains("heard before")
-                            && self.world.lies == 0 =>
-                    {
+                match self.happens(arrived, Input::news(&self.network, event)).answer {
+                    Answer::Accepted | Answer::Ignored(Why::HeardBefore) => {}
+                    Answer::Ignored(why) if !self.executive.is_over() && self.world.lies == 0 => {
+                        let name = self.network.id(event);
                         return Err(format!("news of {name} at {arrived} was ignored: {why}"));
                     }
                     Answer::Ignored(_) => {}
                 }
                 if self.random.u32(0..4) == 0 {
-                    let again = self.executive.handle_news(Time::from_micros(arrived), event);
-                    assert!(matches!(again, Answer::Ignored(_)), "{again:?}");
+                    let again = self.happens(arrived, Input::news(&self.network, event));
+                    assert!(!again.is_accepted(), "{again:?}");
                 }
             }
             Coming::Answer { id, good: true, lost: false } => {
                 self.confirmed.insert(id.clone());
-                self.record(now, Record::Executed { id: id.clone(), ago: None });
-                self.executive.handle_executed(Time::from_micros(now), &id, None);
+                self.happens(now, Input::Executed { id, ago: None });
             }
             Coming::Answer { id, lost, .. } => {
-                self.record(now, Record::Failed { id: id.clone(), reason: "no".into(), doubt: lost });
-                self.executive.handle_failed(Time::from_micros(now), &id, "no", lost);
+                self.happens(now, Input::Failed { id, reason: "no".into(), doubt: lost });
             }
         }
         Ok(())
@@ -282,16 +258,15 @@ impl Life {
             match output {
                 Output::Send(sending) => {
                     self.nothing_before(&sending.name)?;
-                    let due = kirk_network::json::seconds(Duration::from_micros(sending.due.as_micros()));
-                    let (id, attempt) = (sending.id.clone(), sending.attempt);
-                    self.record(now, Record::Dispatch { id, due, attempt });
+                    let (id, due, attempt) = (sending.id.clone(), sending.due, sending.attempt);
+                    self.record(now, Record::Out(Trace::Dispatch { id, due, attempt }));
                     sends.push(sending);
                 }
                 Output::Fixed { event, .. } => {
                     let time = self.executive.dispatcher().known(event).fixed.unwrap().0;
                     let handed = self.setup.handovers.iter().any(|handover| handover.event == event);
                     if self.network.link_of(event).is_none() && (!handed || event == self.network.origin()) {
-                        self.happens(event, time.as_micros(), nature)?;
+                        self.comes_true(event, time.as_micros(), nature)?;
                     }
                 }
                 Output::Warning(text) if self.world.lies == 0 => return Err(text),
@@ -299,14 +274,12 @@ impl Life {
                 Output::Note(_) => {}
                 Output::Over => {
                     let execution = self.executive.execution(Time::from_micros(now), false);
-                    self.record(now, Record::End { execution });
+                    self.record(now, Record::Out(Trace::End { execution }));
                 }
             }
         }
         for sending in sends {
-            let leaves = self.executive.handle_sent(Time::from_micros(now), &sending.id);
-            self.record(now, Record::Sent { id: sending.id.clone() });
-            if !leaves {
+            if !self.happens(now, Input::Sent { id: sending.id.clone() }).is_accepted() {
                 continue;
             }
             let answer = now + self.soon();
@@ -322,7 +295,7 @@ impl Life {
                     of_event(&format!("run/{}", h.name)) || self.done.contains_key(&format!("run/{}", h.name))
                 });
                 if last && self.network.link_of(event).is_none() && event != self.network.origin() {
-                    self.happens(event, now, nature)?;
+                    self.comes_true(event, now, nature)?;
                 }
             }
             self.coming.push(Reverse((answer, Coming::Answer { id: sending.id, good, lost })));
@@ -335,7 +308,7 @@ impl Life {
     }
 
     /// An executable event really happens, and with it all that follows.
-    fn happens(&mut self, event: EventId, time: i64, nature: &mut Nature) -> Result<(), String> {
+    fn comes_true(&mut self, event: EventId, time: i64, nature: &mut Nature) -> Result<(), String> {
         self.truth[event.index()] = Some(time);
         for deed in nature.begin(event, Time::from_micros(time)).map_err(|error| format!("{error:?}"))? {
             self.truth[deed.event.index()] = Some(deed.truth.as_micros());
@@ -365,7 +338,10 @@ impl Life {
         assert!(replayed.unsent.is_empty());
         let recovered = recover(&journal).map_err(|bad| format!("{bad}\n{}", self.journal))?;
         self.seen.recoveries += u32::from(
-            journal.lines.iter().any(|line| matches!(&line.record, Record::Rebuilt { known: Some(_), .. })),
+            journal
+                .lines
+                .iter()
+                .any(|line| matches!(&line.record, Record::In(Input::Rebuilt { known: Some(_), .. }))),
         );
         // Bit for bit, as far as it can be seen.
         let (ours, theirs) = (format!("{recovered:#?}"), format!("{replayed:#?}"));
@@ -382,8 +358,8 @@ impl Life {
             // Answers that were under way are lost with the process; news is brought again until it is taken.
             self.coming.retain(|Reverse((_, coming))| matches!(coming, Coming::News(_)));
             let clocks = Clocks { boot: None, since_boot: 0, calendar: 0 };
-            self.record(now, Record::Resumed { clocks, unsent: Vec::new() });
-            self.executive.handle_resumed(Time::from_micros(now), &[]);
+            self.record(now, Record::Out(Trace::Back { clocks }));
+            self.happens(now, Input::Resumed { unsent: Vec::new() });
         }
         Ok(())
     }
@@ -563,7 +539,8 @@ fn going_on_makes_one_plan_however_many_were_made() {
     let mut life = Life::new(&network, Strategy::Optimistic, World::default(), 0).unwrap();
     life.live().unwrap();
     let journal = read(life.journal.as_bytes()).unwrap();
-    let plans = journal.lines.iter().filter(|line| matches!(line.record, Record::Rebuilt { .. })).count();
+    let plans =
+        journal.lines.iter().filter(|line| matches!(line.record, Record::In(Input::Rebuilt { .. }))).count();
     let begun = Instant::now();
     let recovered = recover(&journal).unwrap();
     let recovering = begun.elapsed();

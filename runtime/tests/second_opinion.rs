@@ -42,7 +42,7 @@ fn all_max(network: &Network, closed: &Closed) -> Vec<AllMaxEdge> {
 fn fast_ex_times(network: &Network, closed: &Closed, execution: &Execution) -> Vec<i64> {
     let truth = |event: EventId| {
         let row = execution.rows.iter().find(|row| row.event == network.id(event)).unwrap();
-        row.truth.unwrap().0.as_micros()
+        row.truth.unwrap().as_micros()
     };
     let mut state = FastEx::new(network.events().len(), network.origin().index(), &all_max(network, closed));
     let mut times = vec![None; network.events().len()];
@@ -93,7 +93,7 @@ fn every_event_is_executed_when_the_full_closure_would() {
             let times = fast_ex_times(network, &closed, &execution);
             for event in network.event_ids() {
                 let row = execution.rows.iter().find(|row| row.event == network.id(event)).unwrap();
-                let truth = row.truth.unwrap().0.as_micros();
+                let truth = row.truth.unwrap().as_micros();
                 let described = random::describe(network);
                 assert_eq!(truth, times[event.index()], "seed {seed} {nature:?}: {}\n{described}", row.event);
             }

@@ -7,7 +7,7 @@
 #[path = "../../network/tests/oracle/mod.rs"]
 mod oracle;
 
-use kirk_network::json::Seconds;
+use kirk_network::time::Interval;
 use kirk_network::{Duration, EventId, Network, Time};
 use kirk_runtime::{
     Execution, How, Outcome, Plan, Row, Simulation, Strategy, Temper, lucky, simulate, verify,
@@ -31,7 +31,7 @@ fn run(plan: &Plan, strategy: Strategy, nature: Temper, seed: u64) -> Execution 
 /// When an event truly happened.
 fn truth(network: &Network, execution: &Execution, event: EventId) -> Option<i64> {
     let row = execution.rows.iter().find(|row| row.event == network.id(event));
-    row.and_then(|row| row.truth).map(|time| time.0.as_micros())
+    row.and_then(|row| row.truth).map(Time::as_micros)
 }
 
 /// A requirement that does not hold in true time.
@@ -65,8 +65,8 @@ fn violation(network: &Network, execution: &Execution) -> Option<String> {
         );
     }
     for row in &execution.rows {
-        let (Some((low, high)), Some(truth)) = (row.happened, row.truth) else { continue };
-        if truth < low || truth > high {
+        let (Some(within), Some(truth)) = (row.happened, row.truth) else { continue };
+        if !within.contains(truth) {
             return Some(format!("{} happened outside of what is claimed: {row:?}", row.event));
         }
     }
@@ -95,8 +95,10 @@ fn false_claim(network: &Network, execution: &Execution) -> Option<String> {
         return Some("it does not begin with the origin".to_string());
     }
     for (at, row) in execution.rows.iter().enumerate() {
-        let over =
-            row.time.max(row.truth).max(row.happened.map(|(_, high)| high).filter(|_| row.time.is_none()));
+        let over = row
+            .time
+            .max(row.truth)
+            .max(row.happened.map(|within| within.latest).filter(|_| row.time.is_none()));
         if over > Some(execution.makespan) {
             return Some(format!("{} happened after all was over, at {:?}", row.event, execution.makespan));
         }
@@ -172,15 +174,7 @@ fn optimistic_never_finishes_later_than_buffer_on_the_same_durations_and_delays(
                     let rows = |e: &Execution| {
                         e.rows
                             .iter()
-                            .map(|r| {
-                                format!(
-                                    "  {} {:?} {:?} {:?}\n",
-                                    r.event,
-                                    r.time.map(|t| t.0),
-                                    r.how,
-                                    r.observed
-                                )
-                            })
+                            .map(|r| format!("  {} {:?} {:?} {:?}\n", r.event, r.time, r.how, r.observed))
                             .collect::<String>()
                     };
                     format!("{nature:?}\nbuffer\n{}optimistic\n{}", rows(&buffer), rows(&optimistic))
@@ -222,15 +216,15 @@ fn the_verifier_finds_every_decision_that_breaks_a_requirement() {
         }
         let mut random = random::Random::new(seed);
         let row = &mut execution.rows[*random.choose(&ours)];
-        let time = row.time.map_or(0, |time| time.0.as_micros());
+        let time = row.time.map_or(0, |time| time.as_micros());
         let moved = (time + random.within(-5..=5) * 1_000_000).max(0);
-        row.time = Some(Seconds(Duration::from_micros(moved)));
+        row.time = Some(Time::from_micros(moved));
         row.truth = row.time;
         // Later than that, silence would say more, and the record would have to as well; and at the time of another event its
         // place in the record would matter.
-        let when = |row: &Row| row.time.or(row.happened.map(|(_, high)| high)).map(|time| time.0.as_micros());
+        let when = |row: &Row| row.time.or(row.happened.map(|within| within.latest)).map(Time::as_micros);
         let beside = execution.rows.iter().filter(|row| when(row) == Some(moved)).count();
-        if moved > execution.makespan.0.as_micros() || beside > 1 {
+        if moved > execution.makespan.as_micros() || beside > 1 {
             continue;
         }
         execution.rows.sort_by_key(|row| when(row).unwrap_or(i64::MAX));
@@ -256,7 +250,7 @@ fn every_decision_is_known_to_be_over_in_time_order() {
         for row in execution.rows.iter().filter(|row| row.how == How::Dispatched) {
             assert_eq!(row.time, row.truth, "seed {seed}");
         }
-        assert_eq!(execution.rows[0].time.map(|time| time.0.as_micros()), Some(Time::ZERO.as_micros()));
+        assert_eq!(execution.rows[0].time.map(Time::as_micros), Some(Time::ZERO.as_micros()));
     }
 }
 
@@ -279,7 +273,7 @@ const SLIPS: [Slip; 14] = [
         execution.rows.last_mut().map(|row| row.truth = None).is_some()
     }),
     ("the makespan is said to be", |execution| {
-        execution.makespan = Seconds(Duration::from_micros(execution.makespan.0.as_micros() + 1));
+        execution.makespan = later(execution.makespan);
         true
     }),
     ("has no row", |execution| execution.rows.pop().is_some()),
@@ -308,7 +302,7 @@ const SLIPS: [Slip; 14] = [
         // Of one event, all rows say the same.
         let Some(first) = execution.rows.iter().find_map(|row| row.happened) else { return false };
         let alike = execution.rows.iter_mut().filter_map(|row| row.happened.as_mut());
-        alike.filter(|claim| **claim == first).for_each(|claim| claim.0 = later(claim.0));
+        alike.filter(|claim| **claim == first).for_each(|claim| claim.earliest = later(claim.earliest));
         true
     }),
     ("do not fit `never`", |execution| {
@@ -326,8 +320,8 @@ fn of(execution: &mut Execution, how: How) -> Option<&mut Row> {
 }
 
 /// As little later as can be said.
-fn later(time: Seconds) -> Seconds {
-    Seconds(Duration::from_micros(time.0.as_micros() + 1))
+fn later(time: Time) -> Time {
+    time.saturating_add(Duration::SHORTEST)
 }
 
 #[test]
@@ -390,18 +384,20 @@ fn the_verifier_finds_every_claim_that_does_not_follow() {
         let network = plan.network();
         let execution = run(&plan, Strategy::Optimistic, Temper::Random, seed);
         let mut over = execution.clone();
-        over.makespan = Seconds(Duration::from_micros(over.makespan.0.as_micros() - 1));
+        over.makespan = over.makespan.saturating_sub(Duration::SHORTEST);
         assert!(
             !verify(network, &over).is_empty(),
             "over too soon, seed {seed}: {}",
             random::describe(network)
         );
         for at in 0..execution.rows.len() {
-            let Some((low, high)) = execution.rows[at].happened else { continue };
+            let Some(Interval { earliest: low, latest: high }) = execution.rows[at].happened else {
+                continue;
+            };
             for (by_low, by_high) in [(-1, 0), (1, 0), (0, -1), (0, 1)] {
                 let mut claimed = execution.clone();
-                let moved = |time: Seconds, by: i64| Seconds(Duration::from_micros(time.0.as_micros() + by));
-                claimed.rows[at].happened = Some((moved(low, by_low), moved(high, by_high)));
+                let moved = |time: Time, by: i64| Time::from_micros(time.as_micros() + by);
+                claimed.rows[at].happened = Some(Interval::new(moved(low, by_low), moved(high, by_high)));
                 let what = format!("{:?}, seed {seed}: {}", claimed.rows[at], random::describe(network));
                 assert!(!verify(network, &claimed).is_empty(), "{what}");
                 claims += 1;

@@ -7,11 +7,11 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration as Real, Instant};
 
 use kirk_network::Time;
-use kirk_runtime::journal::Record;
-use kirk_runtime::{Output, Sending};
+use kirk_runtime::journal::Trace;
+use kirk_runtime::{Input, Output, Reason, Sending, Why};
 
 use super::{LONGEST_SLEEP, Loop};
-use crate::desk::{AnswerNews, Ignored, Message, Reply};
+use crate::desk::{AnswerNews, Message, Reply};
 use crate::happening::Happening;
 use crate::mission::{PATIENCE, Zero};
 use crate::snapshot::Waits;
@@ -79,13 +79,11 @@ impl Loop {
                     let wait = PATIENCE.0.saturating_mul(1 << (attempts - 1).min(10)).min(PATIENCE.1);
                     (asked, again) = (false, Instant::now() + wait);
                     if reason != last {
-                        self.record(
-                            Time::ZERO,
-                            Record::Warning { text: format!("`{}` is not confirmed: {reason}", first.name) },
-                        );
+                        let text = format!("`{}` is not confirmed: {reason}", first.name);
+                        self.trace(Time::ZERO, Trace::Warning { text });
                         self.write();
                         last.clone_from(&reason);
-                        self.desk.tell(Happening::Failed { at: super::at(Time::ZERO), id, reason });
+                        self.desk.tell(Happening::Failed { at: Time::ZERO, id, reason });
                     }
                 }
                 Ok(message) => self.take_early(message),
@@ -98,7 +96,7 @@ impl Loop {
     /// What is handed over first at time zero, if anything is.
     fn first_sending(&self) -> Option<Sending> {
         let mut ahead = self.executive.clone();
-        ahead.handle_timeout(Time::ZERO);
+        ahead.handle(Time::ZERO, Input::Timeout {});
         let sending = |output| if let Output::Send(sending) = output { Some(sending) } else { None };
         std::iter::from_fn(|| ahead.poll_output()).find_map(sending)
     }
@@ -106,7 +104,7 @@ impl Loop {
     /// The driver has confirmed the first event, `ago` seconds after it was executed if it says so: that was time zero.
     fn begin(&mut self, id: String, ago: Option<f64>) {
         self.clock.start(ago.map_or(0, |ago| (ago * 1e6) as i64));
-        self.record(Time::ZERO, Record::Began { clocks: self.clock.anchor() });
+        self.trace(Time::ZERO, Trace::Began { clocks: self.clock.anchor() });
         self.waits = None;
         self.begun_by = Some(id.clone());
         self.perform();
@@ -117,9 +115,7 @@ impl Loop {
         let detail = format!(
             "the driver did not confirm `{name}` within {within} s, so the mission has not begun: {last}"
         );
-        let reason = "driver-failed".to_string();
-        self.executive.handle_stopped(Time::ZERO, &reason, &detail);
-        self.record(Time::ZERO, Record::Stopped { reason, detail });
+        self.happens(Time::ZERO, Input::Stopped { reason: Reason::DriverFailed, detail });
     }
 
     fn take_early(&mut self, message: Message) {
@@ -140,18 +136,14 @@ impl Loop {
         reply: Reply<AnswerNews>,
     ) {
         for event in names {
-            let why = "the mission has not begun".to_string();
-            if self.ignored.insert((event.clone(), why.clone())) {
-                self.record(Time::ZERO, Record::Ignored { event: event.clone(), why: why.clone() });
-            }
-            answer.ignored.push(Ignored { event, why });
+            answer.ignored.push(self.ignored(Time::ZERO, event, Why::NotBegun));
         }
         self.write();
         reply(answer);
     }
 
     fn warn(&mut self, text: String) {
-        self.record(Time::ZERO, Record::Warning { text: text.clone() });
-        self.desk.tell(Happening::Warning { at: super::at(Time::ZERO), text });
+        self.trace(Time::ZERO, Trace::Warning { text: text.clone() });
+        self.desk.tell(Happening::Warning { at: Time::ZERO, text });
     }
 }

@@ -87,7 +87,7 @@ impl Executive {
         executive.unannounced.retain(|event| !told(event));
         executive.orders = orders;
         executive.mend();
-        executive.handle_timeout(now);
+        executive.timeout(now);
         Ok(executive)
     }
 }

@@ -36,8 +36,8 @@ impl fmt::Display for BadJournal {
 
 impl std::error::Error for BadJournal {}
 
-/// No line is shorter than `01234567 {"at":0,"record":{"timeout":{}}}` and its end.
-const SHORTEST_LINE: usize = 42;
+/// No line is shorter than `01234567 {"at":0,"record":{"in":{"timeout":{}}}}` and its end.
+const SHORTEST_LINE: usize = 49;
 
 /// Writes a line to follow one with a checksum (0 for the first), and returns it with its own checksum.
 pub fn write(line: &Line, before: u32) -> (String, u32) {
@@ -176,14 +176,15 @@ mod tests {
     use super::*;
     use crate::dispatcher::Settings;
     use crate::executive::Setup;
-    use crate::journal::Clocks;
+    use crate::input::Input;
+    use crate::journal::{Clocks, Trace};
     use crate::order::Patience;
 
     #[test]
     fn a_journal_of_another_format_is_refused_by_its_name() {
         for start in [
-            r#"{"format":"kirk-journal/1","version":"0.1.0"}"#,
-            r#"{"format":"kirk-journal/3","version":"9.0.0","tea":"green"}"#,
+            r#"{"format":"kirk-journal/2","version":"0.1.0"}"#,
+            r#"{"format":"kirk-journal/9","version":"9.0.0","tea":"green"}"#,
         ] {
             let json = format!(r#"{{"at":0,"record":{{"start":{start}}}}}"#);
             let text = format!("{:08x} {json}\n", checksum(0, json.as_bytes()));
@@ -196,7 +197,10 @@ mod tests {
 
     #[test]
     fn every_damage_is_noticed_and_only_a_torn_end_is_forgiven() {
-        let line = |n: i64| Line::new(Time::from_micros(n), Record::Warning { text: format!("line {n}") });
+        let line = |n: i64| {
+            let text = format!("line {n}");
+            Line::new(Time::from_micros(n), Record::Out(Trace::Warning { text }))
+        };
         let network = json::read(r#"{"format": "kirk-network/1", "origin": "z", "events": ["z"]}"#).unwrap();
         let setup = Setup {
             program: "p".into(),
@@ -252,7 +256,7 @@ mod tests {
             assert!(bad.line == 3 && bad.message.contains("zeros"), "{zeros}: {bad}");
             assert!(bad.message.contains(&format!("right, {} bytes", starts[2])), "{bad}");
         }
-        let shortest = write(&Line::new(Time::ZERO, Record::Timeout {}), 0).0;
+        let shortest = write(&Line::new(Time::ZERO, Record::In(Input::Timeout {})), 0).0;
         assert_eq!(shortest.len(), SHORTEST_LINE);
         // A line that is missing, doubled, or in another place.
         let part = |n: usize| &text[starts[n]..starts[n + 1]];

@@ -1,14 +1,13 @@
 //! Those who listen.
 
-use kirk_network::Duration as Span;
-use kirk_network::json::{Seconds, seconds};
+use kirk_network::Time;
 use kirk_runtime::{Execution, How, Outcome, Row};
 
 use super::*;
 use crate::happening::Happening;
 
-fn at(micros: i64) -> Seconds {
-    seconds(Span::from_micros(micros))
+fn at(micros: i64) -> Time {
+    Time::from_micros(micros)
 }
 
 fn warning(text: impl Into<String>) -> Happening {

@@ -4,7 +4,7 @@ use std::fmt;
 use std::io;
 
 use kirk_compiler::{Code, Diagnostic, Severity, Source, Span};
-use kirk_network::json::{ReadProblem, Seconds, locate};
+use kirk_network::json::{ReadProblem, Seconds, parse};
 use kirk_network::{Duration, EventId, Network, Time};
 use kirk_runtime::execution::FORMAT;
 use kirk_runtime::{
@@ -176,7 +176,7 @@ impl Observations {
             }
         };
         let text = without_mark(&String::from_utf8_lossy(&bytes)).to_string();
-        let parsed: Result<ObservationFile, _> = serde_json::from_str(&text);
+        let parsed = parse(&text);
         self.sources.push(Source::new(file, text.as_str()));
         match parsed {
             Ok(ObservationFile(entries)) => {
@@ -185,8 +185,7 @@ impl Observations {
                     self.add(&name, time, Span::new(source, at, at + name.len()), network);
                 }
             }
-            Err(error) => {
-                let ReadProblem { offset, message } = locate(&text, &error);
+            Err(ReadProblem { offset, message }) => {
                 let span = Span::new(source, offset, offset);
                 let help =
                     "the file is a JSON object of event: time in seconds, such as {\"drive:end\": 17.5}";

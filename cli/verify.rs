@@ -3,7 +3,7 @@
 use std::io;
 
 use kirk_compiler::{Code, Diagnostic, Source, Span};
-use kirk_network::json::{ReadProblem, locate};
+use kirk_network::json::{ReadProblem, parse};
 use kirk_runtime::execution::FORMAT;
 use kirk_runtime::journal::{self, is_journal};
 use kirk_runtime::{Execution, Violation, lucky, replay, verify as check};
@@ -99,7 +99,7 @@ fn read_execution(file: &str) -> Result<Execution, Box<(Source, Diagnostic)>> {
         );
     }
     let text = without_mark(&String::from_utf8_lossy(&bytes)).to_string();
-    let read: Result<Execution, _> = serde_json::from_str(&text);
+    let read = parse::<Execution>(&text);
     if let Ok(execution) = &read
         && execution.format != FORMAT
     {
@@ -107,8 +107,7 @@ fn read_execution(file: &str) -> Result<Execution, Box<(Source, Diagnostic)>> {
         let diagnostic = Diagnostic::error(Code::BadRecord, Span::new(0, 0, 0), message);
         return Err(Box::new((Source::new(shown(file), text.as_str()), diagnostic)));
     }
-    read.map_err(|error| {
-        let ReadProblem { offset, message } = locate(&text, &error);
+    read.map_err(|ReadProblem { offset, message }| {
         let diagnostic = Diagnostic::error(Code::BadRecord, Span::new(0, offset, offset), message)
             .help("kirk run --format json writes such a record");
         Box::new((Source::new(shown(file), text.as_str()), diagnostic))

@@ -28,7 +28,7 @@ use std::ops::Range;
 use crate::json::ReadProblem;
 use crate::kinds;
 use crate::model::{ContingentLink, Delay, Event, EventId, Name, Network, normal_name};
-use crate::plain::{Intervals, about_link, unquoted};
+use crate::plain::{Intervals, unquoted};
 use crate::source_map::SourceMap;
 use crate::time::Duration;
 use scan::{Data, Document, Element, scan};
@@ -148,12 +148,12 @@ impl Reader<'_> {
             }
             Err(errors) => {
                 for error in errors {
-                    let (index, message) = about_link(&error);
-                    match index.and_then(|index| links.get(index)) {
+                    match error.link().and_then(|link| links.get(link)) {
                         Some((edge, _)) => {
-                            self.problem(edge.offset, format!("{}: {message}", edge.describe("edge")));
+                            let message = format!("{}: {}", edge.describe("edge"), error.what());
+                            self.problem(edge.offset, message);
                         }
-                        None => self.problem(document.graph_offset, message),
+                        None => self.problem(document.graph_offset, error.to_string()),
                     }
                 }
                 None

@@ -1,6 +1,8 @@
 //! The network file `kirk-network/1`: seconds in decimal, exact to a microsecond, nothing unknown.
 
+mod element;
 mod fields;
+mod parse;
 mod reader;
 mod writer;
 
@@ -10,7 +12,7 @@ use crate::model::Network;
 use crate::source_map::SourceMap;
 use crate::time::Duration;
 
-pub use fields::locate;
+pub use parse::parse;
 pub use writer::{write, write_dispatchable};
 
 /// The `format` of the files read and written here.

@@ -375,50 +375,72 @@ pub enum ModelError {
     },
 }
 
-impl fmt::Display for ModelError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl ModelError {
+    /// The number of the requirement that is wrong.
+    pub fn requirement(&self) -> Option<usize> {
+        if let ModelError::RequirementReversed { index, .. } = self { Some(*index) } else { None }
+    }
+
+    /// The number of the contingent link that is wrong.
+    pub fn link(&self) -> Option<usize> {
+        match self {
+            ModelError::LinkBounds { index, .. }
+            | ModelError::DelayBounds { index, .. }
+            | ModelError::ContingentOrigin { index }
+            | ModelError::TwoLinksEndThere { index, .. } => Some(*index),
+            _ => None,
+        }
+    }
+
+    /// What is wrong, without the number that means nothing to the author of some files.
+    pub fn what(&self) -> String {
         match self {
             ModelError::UnknownEvent => {
-                write!(f, "a constraint or the origin names an event that does not exist")
+                "a constraint or the origin names an event that does not exist".to_string()
             }
-            ModelError::Nameless => write!(f, "an event has no name"),
-            ModelError::DuplicateName(name) => write!(f, "the event name `{name}` is used twice"),
-            ModelError::RequirementReversed { index, lower, upper } => {
-                write!(f, "requirements[{index}]: the lower bound {lower} is above the upper bound {upper}")
+            ModelError::Nameless => "an event has no name".to_string(),
+            ModelError::DuplicateName(name) => format!("the event name `{name}` is used twice"),
+            ModelError::RequirementReversed { lower, upper, .. } => {
+                format!("the lower bound {lower} is above the upper bound {upper}")
             }
-            ModelError::LinkBounds { index, lower, upper } if lower > upper && *lower >= Duration::ZERO => {
-                write!(
-                    f,
-                    "contingents[{index}]: the lower bound {lower} is above the upper bound {upper}: Nature has no \
-                     duration to choose from. Only what is required may contradict itself: two requirements in \
-                     `.json`, two ordinary edges in `.stnu` and `.plainstnu`"
+            ModelError::LinkBounds { lower, upper, .. } if lower > upper && *lower >= Duration::ZERO => {
+                format!(
+                    "the lower bound {lower} is above the upper bound {upper}: Nature has no duration to choose from. \
+                     Only what is required may contradict itself: two requirements in `.json`, two ordinary edges in \
+                     `.stnu` and `.plainstnu`"
                 )
             }
-            ModelError::LinkBounds { index, lower, upper } => write!(
-                f,
-                "contingents[{index}]: the bounds [{lower}, {upper}] are not 0 <= lower <= upper; Nature needs a \
-                 duration to choose from"
+            ModelError::LinkBounds { lower, upper, .. } => format!(
+                "the bounds [{lower}, {upper}] are not 0 <= lower <= upper; Nature needs a duration to choose from"
             ),
-            ModelError::DelayBounds { index, min, max } => match max {
-                Bound::Finite(max) => {
-                    write!(f, "contingents[{index}]: the delay [{min}, {max}] is not 0 <= min <= max")
-                }
-                Bound::Infinite => write!(f, "contingents[{index}]: the shortest delay {min} is negative"),
-            },
-            ModelError::ContingentOrigin { index } => {
-                write!(f, "contingents[{index}]: the link ends in the origin, which is executed first")
+            ModelError::DelayBounds { min, max: Bound::Finite(max), .. } => {
+                format!("the delay [{min}, {max}] is not 0 <= min <= max")
             }
-            ModelError::TwoLinksEndThere { index, event } => write!(
-                f,
-                "contingents[{index}]: `{event}` already ends another contingent link; an event happens once"
-            ),
+            ModelError::DelayBounds { min, .. } => format!("the shortest delay {min} is negative"),
+            ModelError::ContingentOrigin { .. } => {
+                "the link ends in the origin, which is executed first".to_string()
+            }
+            ModelError::TwoLinksEndThere { event, .. } => {
+                format!("`{event}` already ends another contingent link; an event happens once")
+            }
             ModelError::LinkCycle { event } => {
-                write!(
-                    f,
+                format!(
                     "the contingent links lead from `{event}` back to itself: none of them could ever start"
                 )
             }
         }
+    }
+}
+
+impl fmt::Display for ModelError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(index) = self.requirement() {
+            write!(f, "requirements[{index}]: ")?;
+        }
+        if let Some(index) = self.link() {
+            write!(f, "contingents[{index}]: ")?;
+        }
+        f.write_str(&self.what())
     }
 }
 

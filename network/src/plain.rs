@@ -16,9 +16,7 @@ use std::ops::Range;
 
 use crate::json::ReadProblem;
 use crate::kinds;
-use crate::model::{
-    ContingentLink, Delay, Event, EventId, ModelError, Name, Network, Requirement, normal_name,
-};
+use crate::model::{ContingentLink, Delay, Event, EventId, Name, Network, Requirement, normal_name};
 use crate::source_map::SourceMap;
 use crate::time::{Bound, Duration};
 
@@ -78,20 +76,6 @@ impl Intervals {
             lower: Bound::Infinite,
             upper: Bound::Finite(weight),
         });
-    }
-}
-
-/// What a model error says of a link, without the index that means nothing to the author of a file.
-pub(crate) fn about_link(error: &ModelError) -> (Option<usize>, String) {
-    let text = error.to_string();
-    match error {
-        ModelError::LinkBounds { index, .. }
-        | ModelError::DelayBounds { index, .. }
-        | ModelError::ContingentOrigin { index }
-        | ModelError::TwoLinksEndThere { index, .. } => {
-            (Some(*index), text.split_once("]: ").map_or(text.clone(), |(_, rest)| rest.to_string()))
-        }
-        _ => (None, text),
     }
 }
 
@@ -286,12 +270,12 @@ impl<'a> Reader<'a> {
             }
             Err(errors) => {
                 for error in errors {
-                    let (link, message) = about_link(&error);
-                    match link.and_then(|link| links.get(link)) {
+                    match error.link().and_then(|link| links.get(link)) {
                         Some(line) => {
-                            self.problem(line.words[0].offset, format!("line {}: {message}", line.number));
+                            let message = format!("line {}: {}", line.number, error.what());
+                            self.problem(line.words[0].offset, message);
                         }
-                        None => self.problem(end, message),
+                        None => self.problem(end, error.to_string()),
                     }
                 }
                 None

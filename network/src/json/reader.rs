@@ -6,7 +6,9 @@ use serde::Deserialize;
 use serde::de::{Deserializer, MapAccess, Visitor};
 use serde_json::value::RawValue;
 
-use super::fields::{CONTINGENT, Content, REQUIREMENT, locate, problem};
+use super::element::Element;
+use super::fields::{CONTINGENT, Content, Fields, REQUIREMENT};
+use super::parse::parse;
 use super::{FORMAT, ReadProblem};
 use crate::model::{
     ContingentLink, Delay, Event, EventId, ModelError, Name, Network, Requirement, normal_name,
@@ -17,7 +19,7 @@ use crate::time::{Bound, Duration};
 
 /// Reads a network file, and remembers where its constraints stand.
 pub(super) fn read(text: &str) -> Result<(Network, SourceMap), Vec<ReadProblem>> {
-    let Fields(fields) = serde_json::from_str(text).map_err(|error| vec![locate(text, &error)])?;
+    let Fields(fields) = parse(text).map_err(|problem| vec![problem])?;
     let mut reader = Reader { text, problems: Vec::new(), event_of: BTreeMap::new() };
     let file = reader.file(fields);
     let network = reader.network(&file);
@@ -40,31 +42,6 @@ struct FileText<'a> {
     events: Option<&'a RawValue>,
     requirements: Option<&'a RawValue>,
     contingents: Option<&'a RawValue>,
-}
-
-/// A JSON object, field by field, in order, nothing lost.
-struct Fields<'a>(Vec<(String, &'a RawValue)>);
-
-impl<'de> Deserialize<'de> for Fields<'de> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Fields<'de>, D::Error> {
-        struct FieldsVisitor;
-        impl<'de> Visitor<'de> for FieldsVisitor {
-            type Value = Fields<'de>;
-
-            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                write!(f, "a network: a JSON object with `format`, `origin` and `events`")
-            }
-
-            fn visit_map<M: MapAccess<'de>>(self, mut map: M) -> Result<Fields<'de>, M::Error> {
-                let mut fields = Vec::new();
-                while let Some(field) = map.next_entry()? {
-                    fields.push(field);
-                }
-                Ok(Fields(fields))
-            }
-        }
-        deserializer.deserialize_map(FieldsVisitor)
-    }
 }
 
 struct EventText {
@@ -142,16 +119,10 @@ struct Elements<'a> {
 impl<'a> Elements<'a> {
     /// The element that something is wrong with.
     fn at_fault(&self, error: &ModelError) -> Option<&'a RawValue> {
-        match error {
-            ModelError::RequirementReversed { index, .. } => self.requirements.get(*index).copied(),
-            ModelError::LinkBounds { index, .. }
-            | ModelError::DelayBounds { index, .. }
-            | ModelError::ContingentOrigin { index }
-            | ModelError::TwoLinksEndThere { index, .. } => self.contingents.get(*index).copied(),
-            ModelError::UnknownEvent
-            | ModelError::Nameless
-            | ModelError::DuplicateName(_)
-            | ModelError::LinkCycle { .. } => self.origin,
+        match (error.requirement(), error.link()) {
+            (Some(index), _) => self.requirements.get(index).copied(),
+            (_, Some(index)) => self.contingents.get(index).copied(),
+            (None, None) => self.origin,
         }
     }
 }
@@ -212,16 +183,12 @@ impl<'a> Reader<'a> {
             self.problem(raw, format!("{name}: expected an object, {{\"from\": ..., \"to\": ..., ...}}"));
             return None;
         }
-        serde_json::from_str(raw.get())
-            .map_err(|error| {
-                let before = self.problems.len();
-                self.look_into(name, raw, fields);
-                if self.problems.len() == before {
-                    let at = self.offset(raw);
-                    self.problems.push(problem(self.text, at, name, raw.get(), &error));
-                }
-            })
-            .ok()
+        if let Ok(found) = serde_json::from_str(raw.get()) {
+            return Some(found);
+        }
+        let before = self.problems.len();
+        self.look_into(name, raw, fields);
+        if self.problems.len() == before { self.element(name, raw) } else { None }
     }
 
     /// Says what is wrong with the fields of an object that could not be read, each in its place.
@@ -377,14 +344,13 @@ impl<'a> Reader<'a> {
     }
 
     fn element<T: Deserialize<'a>>(&mut self, name: &str, raw: &'a RawValue) -> Option<T> {
-        match serde_json::from_str(raw.get()) {
-            Ok(value) => Some(value),
-            Err(error) => {
-                let at = self.offset(raw);
-                self.problems.push(problem(self.text, at, name, raw.get(), &error));
-                None
-            }
-        }
+        let problem = match parse(raw.get()) {
+            Ok(value) => return Some(value),
+            Err(problem) => problem,
+        };
+        let offset = self.offset(raw) + problem.offset;
+        self.problems.push(ReadProblem { offset, message: format!("{name}: {}", problem.message) });
+        None
     }
 
     fn problem(&mut self, raw: &'a RawValue, message: String) {
@@ -392,7 +358,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Where a borrowed value is in the text.
-    fn offset(&self, raw: &RawValue) -> usize {
-        (raw.get().as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize).min(self.text.len())
+    fn offset(&self, raw: &'a RawValue) -> usize {
+        Element { text: self.text, raw }.offset()
     }
 }

@@ -210,8 +210,8 @@ fn any_size_will_do() {
     let mut asking = talking();
     asking.key(Key::Interrupt, moment(22));
     for state in [talking(), help, asking, State::default(), seen(Snapshot { rows: vec![], ..mission() })] {
-        for width in (0..70).chain([109, 110, 111, 300]) {
-            for height in (0..30).chain([200]) {
+        for width in (0..52).chain([109, 110, 111, 300]) {
+            for height in (0..16).chain([30, 200]) {
                 screen(&state, (width, height), true);
             }
         }

@@ -10,13 +10,6 @@ pub(crate) fn width(text: &str) -> usize {
     Span::raw(text).width()
 }
 
-/// A text cut or filled up to a width.
-pub(crate) fn fill(text: &str, wanted: usize) -> String {
-    let text = cut(text, wanted);
-    let blanks = wanted.saturating_sub(width(&text));
-    text + &" ".repeat(blanks)
-}
-
 /// A text cut in its middle if it is too wide: names differ in their beginnings and their ends.
 pub(crate) fn cut(text: &str, most: usize) -> String {
     let text = &*one_line(text);
@@ -77,7 +70,6 @@ mod tests {
         assert_eq!(cut("drill:end", 9), "drill:end");
         assert_eq!(cut("human-downlink-science:end", 15), "human-d..ce:end");
         assert_eq!(cut("human-downlink-science:end", 5), "human");
-        assert_eq!(fill("drill", 8), "drill   ");
         assert_eq!(shorten("observed, happened in [15, 17]", 12), "observed, ..");
         assert_eq!(shorten("observed", 1), ".");
     }
@@ -85,10 +77,8 @@ mod tests {
     #[test]
     fn wide_letters_take_two_columns() {
         assert_eq!(width("漢字:end"), 8);
-        assert_eq!(fill("漢字", 5), "漢字 ");
         for most in 0..30 {
             assert!(width(&cut("漢字漢字漢字漢字漢字:end", most)) <= most);
-            assert_eq!(width(&fill("漢字漢字漢字漢字漢字:end", most)), most);
         }
     }
 

@@ -6,13 +6,16 @@ use kirk_network::Time;
 use kirk_network::time::Interval;
 use kirk_runtime::{How, Outcome, Pending, Row};
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
-use ratatui::style::{Color, Modifier, Style};
-use ratatui::text::{Line, Span};
+use ratatui::layout::Constraint::{Fill, Length};
+use ratatui::layout::{Layout, Rect};
+use ratatui::style::{Color, Style, Stylize};
+use ratatui::text::{Line, Text};
+use ratatui::widgets::Row as Cells;
+use ratatui::widgets::{Block, Padding, Paragraph, Table, Widget};
 
 use super::log::Tone;
 use super::state::State;
-use super::text::{cut, fill, shorten, width, wrap};
+use super::text::{cut, shorten, width, wrap};
 use crate::timetable::cells;
 
 /// From this width on the timetable and the rest stand side by side.
@@ -30,34 +33,54 @@ pub(crate) fn view(state: &State, now: Time, color: bool, buffer: &mut Buffer) -
     let wide = area.width as usize;
     let view = View { state, now, color };
     let Some(snapshot) = &state.snapshot else {
-        put(buffer, area, &[Line::raw("starting the mission")]);
+        Line::raw("starting the mission").render(area, buffer);
         return 0;
     };
     let headlines = view.headlines(snapshot, wide);
-    let (header, rest) = split(area, 1);
-    let (top, body) = split(rest, headlines.len() as u16);
-    put(buffer, header, &[view.header(snapshot, wide)]);
-    put(buffer, top, &headlines);
+    let [header, rest] = Layout::vertical([Length(1), Fill(1)]).areas(area);
+    let [top, body] = Layout::vertical([Length(headlines.height() as u16), Fill(1)]).areas(rest);
+    view.header(snapshot, header, buffer);
+    headlines.render(top, buffer);
     if state.help {
-        put(buffer, body, &help(wide));
+        help(wide).render(body, buffer);
         return 0;
     }
     let (left, right, below) = if area.width >= WIDE {
         let needed = columns(snapshot).iter().sum::<usize>() + 6;
         let width = (needed as u16).clamp(area.width / 3, area.width * 3 / 5);
-        let right = Rect { x: body.x + width, width: body.width - width, ..body };
-        let below = view.below(snapshot, right.width as usize, right.height as usize);
-        (Rect { width, ..body }, right, below)
+        let [left, right] = Layout::horizontal([Length(width), Fill(1)]).areas(body);
+        (left, right, view.below(snapshot, right.width as usize, right.height as usize))
     } else {
         let rows = (snapshot.rows.len() + 1).min(ROWS.min(body.height as usize / 4) + 1);
         let below = view.below(snapshot, wide, (body.height as usize).saturating_sub(rows));
-        let (left, right) = split(body, body.height.saturating_sub(below.len() as u16));
+        let [left, right] = Layout::vertical([Fill(1), Length(below.height())]).areas(body);
         (left, right, below)
     };
-    put(buffer, right, &below);
+    below.render(right, buffer);
     let visible = (left.height as usize).saturating_sub(1);
-    put(buffer, left, &view.rows(snapshot, left.width as usize, visible));
+    view.rows(snapshot, left.width as usize, visible).render(left, buffer);
     visible
+}
+
+/// Everything but the timetable.
+struct Below {
+    /// What may be heard, and the height it takes.
+    possible: Table<'static>,
+    listed: u16,
+    /// What the driver has in hand, and what was said.
+    lines: Vec<Line<'static>>,
+}
+
+impl Below {
+    fn height(&self) -> u16 {
+        self.listed + self.lines.len() as u16
+    }
+
+    fn render(self, area: Rect, buffer: &mut Buffer) {
+        let [list, rest] = Layout::vertical([Length(self.listed), Fill(1)]).areas(area);
+        self.possible.render(list, buffer);
+        Paragraph::new(self.lines).render(rest, buffer);
+    }
 }
 
 struct View<'a> {
@@ -68,7 +91,8 @@ struct View<'a> {
 
 impl View<'_> {
     /// The program, the time and what may be asked.
-    fn header(&self, snapshot: &Snapshot, wide: usize) -> Line<'static> {
+    fn header(&self, snapshot: &Snapshot, area: Rect, buffer: &mut Buffer) {
+        let wide = area.width as usize;
         let state = match snapshot.outcome {
             _ if self.state.stopping => "stopping",
             Outcome::Running if snapshot.waits.is_some() => "waiting",
@@ -80,20 +104,18 @@ impl View<'_> {
         let help = if wide < ROOMY { "? help" } else { "? help   Ctrl-C stop" };
         let name =
             cut(&snapshot.program, wide.saturating_sub(time.len() + state.len() + help.len() + 7).max(6));
-        let left = format!(" {name}  {time}  {state}");
-        let gap = wide.saturating_sub(width(&left) + help.len() + 1).max(1);
-        let text = format!("{left}{}{help}", " ".repeat(gap));
-        Line::styled(fill(&text, wide), Style::new().add_modifier(Modifier::REVERSED | Modifier::BOLD))
+        let [left, right] = Layout::horizontal([Fill(1), Length(help.len() as u16 + 1)]).areas(area);
+        Line::raw(format!(" {name}  {time}  {state}")).render(left, buffer);
+        Line::raw(help).render(right, buffer);
+        buffer.set_style(area, Style::new().reversed().bold());
     }
 
     /// What stands below the header: a question, the end, or what comes next.
-    fn headlines(&self, snapshot: &Snapshot, wide: usize) -> Vec<Line<'static>> {
-        let lines = |text: &str, style| {
-            let lines = wrap(text, wide).into_iter().take(3);
-            lines.map(|line| Line::styled(fill(&line, wide), style)).collect()
-        };
+    fn headlines(&self, snapshot: &Snapshot, wide: usize) -> Text<'static> {
+        let lines =
+            |text: &str, style: Style| Text::from_iter(wrap(text, wide).into_iter().take(3)).style(style);
         match (self.state.question(), &snapshot.failure, &snapshot.next) {
-            (Some(question), ..) => lines(question, Style::new().add_modifier(Modifier::REVERSED)),
+            (Some(question), ..) => lines(question, Style::new().reversed()),
             (_, Some(failure), _) => lines(&failure.detail, self.style(Color::Red)),
             _ if snapshot.waits.is_some() => {
                 let until = match &snapshot.waits {
@@ -102,10 +124,10 @@ impl View<'_> {
                 };
                 lines(&format!("next: the mission begins {until}"), Style::new())
             }
-            (_, _, Some(next)) => vec![self.next(next, wide)],
-            _ if snapshot.outcome != Outcome::Running => Vec::new(),
-            _ if snapshot.pending.is_empty() => vec![Line::raw("next: waiting for news")],
-            _ => vec![Line::raw("next: waiting for the driver")],
+            (_, _, Some(next)) => self.next(next, wide).into(),
+            _ if snapshot.outcome != Outcome::Running => Text::default(),
+            _ if snapshot.pending.is_empty() => Text::raw("next: waiting for news"),
+            _ => Text::raw("next: waiting for the driver"),
         }
     }
 
@@ -130,20 +152,20 @@ impl View<'_> {
     }
 
     /// The timetable with its heading, from the row that was scrolled to or up to the latest.
-    fn rows(&self, snapshot: &Snapshot, wide: usize, visible: usize) -> Vec<Line<'static>> {
+    fn rows(&self, snapshot: &Snapshot, wide: usize, visible: usize) -> Table<'static> {
         let [time, event, how] = columns(snapshot);
         let room = wide.saturating_sub(time + 5);
         // The word for how comes first, so the rest of it may be cut; names are wanted whole.
         let event = event.min(room.saturating_sub(how.min(room / 2)));
-        let line = |at: &str, name: &str, how: &str| {
-            format!(" {at:>time$}  {}  {}", fill(name, event), shorten(how, room.saturating_sub(event)))
+        let line = |at: String, name: &str, how: &str| {
+            let how = shorten(how, room.saturating_sub(event));
+            Cells::new([Line::from(at).right_aligned(), cut(name, event).into(), how.into()])
         };
         let last = snapshot.rows.len().saturating_sub(visible);
         let first = self.state.first.map_or(last, |first| first.min(last));
         let later = last - first;
         let heading = if later > 0 { format!("how ({later} later: End)") } else { "how".to_string() };
-        let heading =
-            Line::styled(line("time", "event", &heading), Style::new().add_modifier(Modifier::BOLD));
+        let heading = line("time".to_string(), "event", &heading).bold();
         let row = |row: &Row| {
             let [at, name, how] = brief_cells(row);
             let style = match row.how {
@@ -151,71 +173,62 @@ impl View<'_> {
                 How::Imagined => self.style(Color::Yellow),
                 How::Dispatched | How::Never => Style::new(),
             };
-            Line::styled(line(&at, &name, &how), style)
+            line(at, &name, &how).style(style)
         };
         let rows = snapshot.rows.iter().skip(first).take(visible).map(row);
-        std::iter::once(heading).chain(rows).collect()
+        let widths = [Length(time as u16 + 1), Length(event as u16), Fill(1)];
+        Table::new(rows, widths).header(heading).column_spacing(2)
     }
 
     /// Everything but the timetable: what may be heard, what the driver has in hand, and what was said.
-    fn below(&self, snapshot: &Snapshot, wide: usize, height: usize) -> Vec<Line<'static>> {
-        let possible = self.possible(snapshot, wide);
-        let pending: Vec<Line<'static>> =
-            snapshot.pending.iter().map(|pending| self.pending(pending, wide)).collect();
+    fn below(&self, snapshot: &Snapshot, wide: usize, height: usize) -> Below {
+        let possible = self.possible(snapshot);
+        let all = if possible.is_empty() { 0 } else { possible.len() + 1 };
         // The latest is always there; more of it if there is room.
-        let said = self.said(wide, height.saturating_sub(possible.len() + pending.len()).clamp(2, 6));
-        let said_least = said.len().min(2);
-        let possible = self.page(possible, height.saturating_sub(said_least));
-        let mut pending = pending;
-        pending.truncate(height.saturating_sub(said_least + possible.len()));
-        let room = height.saturating_sub(possible.len() + pending.len());
-        let said = said[said.len().saturating_sub(room)..].to_vec();
-        [possible, pending, said].concat()
+        let said = self.said(wide, height.saturating_sub(all + snapshot.pending.len()).clamp(2, 6));
+        let room = height.saturating_sub(said.len().min(2));
+        let listed = all.min(room);
+        let pending = snapshot.pending.iter().take(room - listed).map(|pending| self.pending(pending, wide));
+        let mut lines: Vec<Line<'static>> = pending.collect();
+        let latest = said.len().saturating_sub(height - listed - lines.len());
+        lines.extend(said.into_iter().skip(latest));
+        Below { possible: self.listed(&possible, wide, listed), listed: listed as u16, lines }
     }
 
-    /// What may be heard, with its keys.
-    fn possible(&self, snapshot: &Snapshot, wide: usize) -> Vec<Line<'static>> {
-        let mut all: Vec<(bool, Option<char>, &Possible)> = snapshot
-            .possible
-            .iter()
-            .map(|possible| (self.now < possible.from, self.state.keys.of(&possible.event), possible))
-            .collect();
-        // What has no key comes last, digits come before letters.
+    /// What may be heard, and the keys for it: what has no key comes last, digits come before letters.
+    fn possible<'a>(&self, snapshot: &'a Snapshot) -> Vec<(bool, Option<char>, &'a Possible)> {
+        let keyed = |possible: &'a Possible| {
+            (self.now < possible.from, self.state.keys.of(&possible.event), possible)
+        };
+        let mut all: Vec<_> = snapshot.possible.iter().map(keyed).collect();
         all.sort_by_key(|&(early, key, _)| (early, key.is_none(), key));
+        all
+    }
+
+    /// What may be heard below a title: if there is no room for all of it, a page.
+    fn listed(&self, all: &[(bool, Option<char>, &Possible)], wide: usize, height: usize) -> Table<'static> {
+        let room = height.saturating_sub(1).max(1);
+        let pages = all.len().div_ceil(room).max(1);
+        let page = self.state.turned % pages;
+        let title = match pages {
+            1 if wide < ROOMY => "Press what has happened:".to_string(),
+            1 => "Press the key of what has happened:".to_string(),
+            _ => format!("Press what has happened (page {} of {pages}: Tab)", page + 1),
+        };
         let name = all.iter().map(|(.., possible)| width(&possible.event)).max().unwrap_or(0);
         let name = name.min(if wide < ROOMY { wide.saturating_sub(20) } else { wide / 2 });
-        let mut lines = Vec::new();
-        if !all.is_empty() {
-            let title =
-                if wide < ROOMY { "Press what has happened:" } else { "Press the key of what has happened:" };
-            lines.push(Line::styled(title, Style::new().add_modifier(Modifier::BOLD)));
-        }
-        for (early, key, possible) in all {
-            let key = key.map_or("   ".to_string(), |key| format!("[{key}]"));
-            let text = format!(" {key} {}  {}", fill(&possible.event, name), self.window(possible, wide));
+        let rows = all.iter().skip(page * room).take(room).map(|&(early, key, possible)| {
             let style = match possible.until {
-                _ if early => Style::new().add_modifier(Modifier::DIM),
+                _ if early => Style::new().dim(),
                 Some(until) if self.now > until => self.style(Color::Red),
-                _ => self.style(Color::Green).add_modifier(Modifier::BOLD),
+                _ => self.style(Color::Green).bold(),
             };
-            lines.push(Line::styled(shorten(&text, wide), style));
-        }
-        lines
-    }
-
-    /// As many lines as there is room for: if these are not all below the title, a page of them.
-    fn page(&self, mut lines: Vec<Line<'static>>, height: usize) -> Vec<Line<'static>> {
-        if lines.len() <= height {
-            return lines;
-        }
-        let room = height.saturating_sub(1).max(1);
-        let pages = (lines.len() - 1).div_ceil(room);
-        let page = self.state.turned % pages;
-        let title = format!("Press what has happened (page {} of {pages}: Tab)", page + 1);
-        lines[0] = Line::styled(title, Style::new().add_modifier(Modifier::BOLD));
-        lines.drain(1..1 + page * room);
-        lines.truncate(height);
-        lines
+            let key = key.map_or(String::new(), |key| format!(" [{key}]"));
+            let window = shorten(&self.window(possible, wide), wide.saturating_sub(name + 7));
+            Cells::new([key, cut(&possible.event, name), window]).style(style)
+        });
+        Table::new(rows, [Length(4), Length(name as u16 + 1), Fill(1)])
+            .block(Block::new().title(Line::raw(title).bold()))
     }
 
     /// When news may come, according to the model.
@@ -313,7 +326,7 @@ fn columns(snapshot: &Snapshot) -> [usize; 3] {
     widths
 }
 
-fn help(wide: usize) -> Vec<Line<'static>> {
+fn help(wide: usize) -> Table<'static> {
     let keys = [
         ("1-9, a-z", "the event beside the key has happened: kirk hears of it now"),
         ("Up Down PgUp PgDn Home", "look back in the timetable"),
@@ -324,30 +337,11 @@ fn help(wide: usize) -> Vec<Line<'static>> {
         ("any key", "close this help"),
     ];
     let column = if wide < ROOMY { 9 } else { 23 };
-    let mut lines = Vec::new();
-    for (key, text) in keys {
-        let mut names = wrap(key, column).into_iter();
-        let mut texts = wrap(text, wide.saturating_sub(column + 2)).into_iter();
-        loop {
-            let (name, text) = (names.next(), texts.next());
-            if name.is_none() && text.is_none() {
-                break;
-            }
-            let name = fill(&name.unwrap_or_default(), column);
-            let name = Span::styled(format!(" {name} "), Style::new().add_modifier(Modifier::BOLD));
-            lines.push(Line::from(vec![name, Span::raw(text.unwrap_or_default())]));
-        }
-    }
-    lines
-}
-
-fn split(area: Rect, height: u16) -> (Rect, Rect) {
-    let height = height.min(area.height);
-    (Rect { height, ..area }, Rect { y: area.y + height, height: area.height - height, ..area })
-}
-
-fn put(buffer: &mut Buffer, area: Rect, lines: &[Line<'_>]) {
-    for (line, y) in lines.iter().zip(area.y..area.bottom()) {
-        buffer.set_line(area.x, y, line, area.width);
-    }
+    let rows = keys.map(|(key, text)| {
+        let key = Text::from_iter(wrap(key, column)).bold();
+        let text = Text::from_iter(wrap(text, wide.saturating_sub(column + 2)));
+        let height = key.height().max(text.height());
+        Cells::new([key, text]).height(height as u16)
+    });
+    Table::new(rows, [Length(column as u16), Fill(1)]).block(Block::new().padding(Padding::left(1)))
 }

@@ -73,7 +73,7 @@ struct Left {
 struct Measured {
     slack: Slack,
     what: String,
-    side: &'static str,
+    side: Side,
     place: Option<Span>,
 }
 
@@ -91,7 +91,7 @@ fn measure(network: &Network, input: &Input) -> Result<Option<Left>, TooLarge> {
     let measured = found.into_iter().zip(knobs).map(|(slack, (knob, what, place))| Measured {
         slack,
         what,
-        side: side(knob.parts()[0]),
+        side: Side::of(knob.parts()[0]),
         place,
     });
     let mut bounds: Vec<Measured> = measured.collect();
@@ -134,13 +134,13 @@ fn knobs(network: &Network, input: &Input) -> Vec<(Knob, String, Option<Span>)> 
         });
         return named.filter(|(knob, ..)| is_worth_a_line(knob.parts()[0], network)).collect();
     };
-    let mut written: BTreeMap<(Span, &'static str), Vec<Part>> = BTreeMap::new();
+    let mut written: BTreeMap<(Span, Side), Vec<Part>> = BTreeMap::new();
     for part in bounds(network).iter().map(|knob| knob.parts()[0]) {
         if let Some(place) = written_at(part, origins).filter(|_| is_worth_a_line(part, network)) {
-            written.entry((place, side(part))).or_default().push(part);
+            written.entry((place, Side::of(part))).or_default().push(part);
         }
     }
-    let knob = |((place, _), parts): ((Span, &'static str), Vec<Part>)| {
+    let knob = |((place, _), parts): ((Span, Side), Vec<Part>)| {
         let mut what = words(parts[0], network, input)?;
         if parts.len() > 1 {
             what.push_str(&format!(" ({} occurrences together)", parts.len()));
@@ -174,13 +174,35 @@ fn written_at(part: Part, origins: &Origins) -> Option<Span> {
     is_written.then_some(origin.places[side])
 }
 
-fn side(part: Part) -> &'static str {
-    match part {
-        Part::RequirementUpper(_) | Part::LinkUpper(_) => "upper",
-        Part::RequirementLower(_) | Part::LinkLower(_) => "lower",
-        Part::DelayMin(_) => "min-delay",
-        Part::DelayMax(_) => "max-delay",
-        Part::AfterOrigin | Part::Join(_) => "none",
+/// Which bound of an amount a part is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+enum Side {
+    Lower,
+    MaxDelay,
+    MinDelay,
+    Upper,
+}
+
+impl Side {
+    fn of(part: Part) -> Side {
+        match part {
+            Part::RequirementLower(_) | Part::LinkLower(_) => Side::Lower,
+            Part::DelayMin(_) => Side::MinDelay,
+            Part::DelayMax(_) => Side::MaxDelay,
+            Part::RequirementUpper(_) | Part::LinkUpper(_) => Side::Upper,
+            // Nobody's amounts, which are not measured.
+            Part::AfterOrigin | Part::Join(_) => Side::Upper,
+        }
+    }
+
+    fn words(self) -> &'static str {
+        match self {
+            Side::Lower => "at least",
+            Side::MaxDelay => "maximum",
+            Side::MinDelay => "minimum",
+            Side::Upper => "at most",
+        }
     }
 }
 
@@ -263,7 +285,7 @@ impl Left {
         let mut lines = vec![String::new(), format!("{:>12}  {:>10}  {:<22}  what", "room", "now", "may be")];
         for Measured { slack, what, place, side } in &self.bounds {
             // News that comes at once is among the news.
-            if *side == "max-delay" && slack.value == Bound::Finite(Duration::ZERO) {
+            if *side == Side::MaxDelay && slack.value == Bound::Finite(Duration::ZERO) {
                 continue;
             }
             let room = slack.room.map_or("any".to_string(), |room| format!("{room} s"));
@@ -272,7 +294,7 @@ impl Left {
                 "{room:>12}  {:>10}  {:<22}  {what}, {}{at}",
                 value(slack.value),
                 range(slack),
-                side.replace("-delay", "imum").replace("upper", "at most").replace("lower", "at least")
+                side.words()
             ));
         }
         if !self.critical.is_empty() {
@@ -348,7 +370,7 @@ struct BoundJson<'a> {
     what: &'a str,
     file: Option<&'a str>,
     span: Option<SpanJson>,
-    bound: &'static str,
+    bound: Side,
     value: Option<Seconds>,
     least: Option<Seconds>,
     most: Option<Seconds>,
@@ -398,7 +420,7 @@ impl<'a> SlackJson<'a> {
             what,
             file: place.map(|place| reporter.name(place)),
             span: place.and_then(|place| reporter.span_json(place)),
-            bound: side,
+            bound: *side,
             value: seconds(slack.value),
             least: seconds(slack.least),
             most: seconds(slack.most),

@@ -5,6 +5,7 @@
 //! forms stays, of several one. Names, numbers and strings are not touched.
 
 mod layout;
+mod node;
 mod rules;
 mod tree;
 

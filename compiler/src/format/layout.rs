@@ -1,8 +1,8 @@
 //! Writes a tree of forms and comments, line by line.
 
 use super::WIDTH;
+use super::node::{Node, NodeKind, Where};
 use super::rules::{Glue, Role, glue, parts, role, values};
-use super::tree::{Node, NodeKind, Where};
 
 /// Further to the right than this nothing is aligned.
 const RIGHTMOST: usize = 60;

@@ -1,6 +1,6 @@
 //! Which parts of a form stand on the line of its operator, and where the others go.
 
-use super::tree::{Node, NodeKind, Where};
+use super::node::{Node, NodeKind, Where};
 use crate::words::{Layout, Part, Word, word};
 
 /// Where a part of a form that does not fit on one line goes.

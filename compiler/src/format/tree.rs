@@ -1,39 +1,8 @@
 //! A text as a tree that keeps its comments and blank lines. Expects a text that can be read without an error.
 
+use super::node::{Node, NodeKind, Where};
+use super::rules::width;
 use crate::read::{Kind, Tokens};
-
-/// A form, or a comment.
-#[derive(Debug)]
-pub(super) struct Node<'a> {
-    pub(super) kind: NodeKind<'a>,
-    /// True if there is a blank line before it.
-    pub(super) blank: bool,
-    /// How long it is on one line; `None` if it needs several.
-    pub(super) width: Option<usize>,
-}
-
-#[derive(Debug)]
-pub(super) enum NodeKind<'a> {
-    /// A name, number or string as written.
-    Atom(&'a str),
-    /// What stands between the parentheses.
-    List(Vec<Node<'a>>),
-    /// `'` and a form.
-    Quote(Box<Node<'a>>),
-    /// A comment as written.
-    Comment(&'a str, Where),
-}
-
-/// Where a comment stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Where {
-    /// On lines of its own.
-    Alone,
-    /// Behind something, to the end of the line.
-    Behind,
-    /// Behind something, and something may follow on the same line.
-    Inside,
-}
 
 /// The top level of a text.
 pub(super) fn tree(text: &str) -> Vec<Node<'_>> {
@@ -49,7 +18,7 @@ pub(super) fn tree(text: &str) -> Vec<Node<'_>> {
         while let Some((comment, place, before)) = gap.comment() {
             if let Some((nodes, _)) = open.last_mut() {
                 let kind = NodeKind::Comment(comment, place);
-                nodes.push(Node { width: super::rules::width(&kind), kind, blank: before });
+                nodes.push(Node { width: width(&kind), kind, blank: before });
             }
         }
         let blank = gap.newlines > 1;
@@ -77,10 +46,10 @@ pub(super) fn tree(text: &str) -> Vec<Node<'_>> {
 
 /// Puts a form into the list that is open, with the quotes before it.
 fn finish<'a>(open: &mut [(Vec<Node<'a>>, bool)], quotes: &mut [Vec<bool>], kind: NodeKind<'a>, blank: bool) {
-    let mut node = Node { width: super::rules::width(&kind), kind, blank };
+    let mut node = Node { width: width(&kind), kind, blank };
     while let Some(blank) = quotes.last_mut().and_then(Vec::pop) {
         let kind = NodeKind::Quote(Box::new(node));
-        node = Node { width: super::rules::width(&kind), kind, blank };
+        node = Node { width: width(&kind), kind, blank };
     }
     if let Some((nodes, _)) = open.last_mut() {
         nodes.push(node);

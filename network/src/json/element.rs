@@ -150,6 +150,11 @@ impl<'de> Deserializer<'de> for Element<'de> {
         visitor.visit_enum(word.into_deserializer()).map_err(|wrong: Wrong| wrong.at(self))
     }
 
+    /// However deep it is.
+    fn deserialize_ignored_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
+        visitor.visit_unit()
+    }
+
     /// A [`RawValue`], which only serde_json can make.
     fn deserialize_newtype_struct<V: Visitor<'de>>(
         self,
@@ -164,7 +169,7 @@ impl<'de> Deserializer<'de> for Element<'de> {
 
     forward_to_deserialize_any! {
         bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char bytes byte_buf unit unit_struct tuple_struct map
-        identifier ignored_any
+        identifier
     }
 }
 

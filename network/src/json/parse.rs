@@ -247,6 +247,18 @@ mod tests {
         "##);
     }
 
+    #[test]
+    fn what_nobody_asked_for_may_be_deep() {
+        #[derive(Debug, Deserialize)]
+        struct Named {
+            #[allow(dead_code, reason = "it is only read")]
+            name: String,
+        }
+        let deep = format!("{}{}", "[".repeat(100_000), "]".repeat(100_000));
+        let problem = parse::<Named>(&format!(r#"{{"more": {deep}, "name": 5}}"#)).unwrap_err();
+        assert_eq!(problem.message, "expected a text in quotation marks, not `5`");
+    }
+
     /// Broken at random, a text means the same to both readers, or nothing to both.
     #[test]
     fn both_readers_agree() {

@@ -129,19 +129,18 @@ fn finish(
     common: &Common,
 ) -> io::Result<Status> {
     let address = ready.address().map(|address| format!("news is heard at http://{address}/"));
-    if let (Some(address), false) = (&address, common.quiet) {
-        remark(address);
-    }
-    if let (Some(zero), false) = (zero(ready.options()), common.quiet || screen) {
-        remark(&zero);
-    }
+    let zero = zero(ready.options()).filter(|_| !screen);
+    let greet = || address.iter().chain(&zero).filter(|_| !common.quiet).for_each(|line| remark(line));
     let desk = ready.desk();
     kirk_executive::stop_on_signals(desk.clone());
     let watching = if screen {
+        greet();
         let options = live::Options { color: output::colors(common.color), greeting: address };
         watch::screen(desk, options, said, common.quiet)
     } else {
         let watching = watch::print(&desk, said, common.quiet);
+        // Whoever reads where news is heard may send some at once, and what becomes of it is told to those who watch by then.
+        greet();
         if !stdin_taken && !live::is_in_background() {
             watch::read_lines(desk);
         }

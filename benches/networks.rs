@@ -11,7 +11,8 @@ use std::collections::BinaryHeap;
 
 use divan::{Bencher, black_box};
 use fast_ex::{AllMaxEdge, FastEx};
-use kirk_network::Dispatchable;
+use kirk_network::repair::{Allowed, Options, ours, repairs};
+use kirk_network::{Dispatchable, Duration};
 
 fn main() {
     divan::main();
@@ -30,6 +31,24 @@ fn conflict(bencher: Bencher<'_, '_>, group: &str) {
     let networks = work::public(group);
     bencher.bench_local(|| {
         networks.iter().filter(|network| kirk_network::check(black_box(network)).is_ok()).count()
+    });
+}
+
+/// What would make it controllable: five proven changes of what is ours, in whole seconds.
+#[divan::bench(args = work::NOT_CONTROLLABLE)]
+fn repair(bencher: Bencher<'_, '_>, group: &str) {
+    let networks: Vec<_> = work::public(group)
+        .into_iter()
+        .map(|network| {
+            let allowed = |knob| Allowed::relative(&network, knob, Duration::from_secs(1));
+            (ours(&network).into_iter().map(allowed).collect::<Vec<_>>(), network)
+        })
+        .collect();
+    bencher.bench_local(|| {
+        let count = |(allowed, network): &(Vec<Allowed>, _)| {
+            repairs(black_box(network), allowed, &Options::default()).map(|it| it.map(|it| it.repairs.len()))
+        };
+        networks.iter().filter(|it| count(it).is_ok()).count()
     });
 }
 

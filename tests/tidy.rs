@@ -32,6 +32,7 @@ fn what_belongs_in_one_place_is_named_in_one_place() {
         ("lexpr", "compiler"),
         ("petgraph", "network"),
         ("strsim", "network"),
+        ("good_lp", "network"),
         ("lsp-server", "lsp"),
         ("lsp-types", "lsp"),
         ("clap", "."),

@@ -16,15 +16,20 @@ impl Reduction {
     /// # Errors
     /// [`TooLarge`] if what the cycle takes from the bounds adds up to more than 64-bit microseconds can hold.
     pub fn conflict(&self, network: &Network, cycle: &Cycle) -> Result<Conflict, TooLarge> {
+        self.tally(network, &cycle.steps).conflict()
+    }
+
+    /// What steps of the plain STNU take from the bounds of the network.
+    pub(crate) fn tally<'a>(&self, network: &'a Network, steps: &[(Step, i64)]) -> Tally<'a> {
         let mut tally = Tally { network, times: BTreeMap::new() };
-        for &(step, times) in &cycle.steps {
+        for &(step, times) in steps {
             match step {
                 Step::Edge(edge) => tally.edge(self, self.sources[edge as usize], times),
                 Step::Lower(link) => tally.link(self, link, &EARLY, times),
                 Step::Upper(link) => tally.link(self, link, &LATE, times),
             }
         }
-        tally.conflict()
+        tally
     }
 }
 
@@ -34,12 +39,17 @@ impl Violation {
     /// # Errors
     /// [`TooLarge`] if the durations add up to more than 64-bit microseconds can hold.
     pub(crate) fn conflict(&self, network: &Network) -> Result<Conflict, TooLarge> {
+        self.tally(network)?.conflict()
+    }
+
+    /// What the bound and the links take from the bounds of the network.
+    pub(crate) fn tally<'a>(&self, network: &'a Network) -> Result<Tally<'a>, TooLarge> {
         let mut tally = Tally { network, times: BTreeMap::new() };
         let meet = Trees::new(network)?.lowest_common_ancestor(network, self.from, self.to);
         tally.add(self.source.part(), 1);
         tally.path(meet, self.to, Part::LinkUpper, 1);
         tally.path(meet, self.from, Part::LinkLower, 1);
-        tally.conflict()
+        Ok(tally)
     }
 }
 
@@ -68,9 +78,10 @@ const EARLY: End = End { link: Part::LinkLower, back: Part::LinkUpper, delay: Pa
 const LATE: End = End { link: Part::LinkUpper, back: Part::LinkLower, delay: Part::DelayMin };
 
 /// Sums up what a cycle takes from each bound of the network.
-struct Tally<'a> {
+pub(crate) struct Tally<'a> {
     network: &'a Network,
-    times: BTreeMap<Part, i64>,
+    /// How often, opposite uses against one another.
+    pub(crate) times: BTreeMap<Part, i64>,
 }
 
 impl Tally<'_> {
@@ -131,13 +142,22 @@ impl Tally<'_> {
         }
     }
 
+    /// What is taken in all, in microseconds.
+    pub(crate) fn total(&self) -> Result<i64, TooLarge> {
+        let mut total = 0_i64;
+        for (&part, &times) in &self.times {
+            let amount = times.checked_mul(signed_bound(self.network, part)).ok_or(TooLarge)?;
+            total = total.checked_add(amount).ok_or(TooLarge)?;
+        }
+        Ok(total)
+    }
+
     fn conflict(self) -> Result<Conflict, TooLarge> {
         let mut members = Vec::new();
-        let mut total = 0_i64;
+        let total = self.total()?;
         for (&part, &times) in &self.times {
             let bound = signed_bound(self.network, part);
             let amount = times.checked_mul(bound).ok_or(TooLarge)?;
-            total = total.checked_add(amount).ok_or(TooLarge)?;
             // Opposite uses of one bound cancel, and news at once is nobody's fault.
             let at_once = bound == 0 && matches!(part, Part::DelayMin(_) | Part::DelayMax(_));
             if times > 0 && !at_once {

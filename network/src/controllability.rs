@@ -34,6 +34,10 @@ pub struct Cycle {
     pub steps: Vec<(Step, i64)>,
 }
 
+/// A negative way on from a contingent event on a cycle that takes both cases of its link: the steps, counted. Without such a
+/// way the lower case must not be taken, and the cycle would not be semi-reducible.
+pub(crate) type Ahead = Vec<(Step, i64)>;
+
 /// `waiter` must wait for the contingent event of `link` until `-weight` after its activation, and no longer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wait {
@@ -67,7 +71,16 @@ pub fn negative_cycle(stnu: &Stnu) -> Result<Option<Cycle>, TooLarge> {
     let mut search = Search::new(stnu, Purpose::Explain);
     Ok(match search.run()? {
         None => None,
-        Some(cycle) => Some(search.count(cycle)?),
+        Some(cycle) => Some(Cycle { steps: search.count(&cycle)? }),
+    })
+}
+
+/// The same, with what else makes the cycle a reason.
+pub(crate) fn negative_cycle_ahead(stnu: &Stnu) -> Result<Option<(Cycle, Vec<Ahead>)>, TooLarge> {
+    let mut search = Search::new(stnu, Purpose::Explain);
+    Ok(match search.run()? {
+        None => None,
+        Some(cycle) => Some((Cycle { steps: search.count(&cycle)? }, search.ahead(&cycle))),
     })
 }
 

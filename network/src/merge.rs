@@ -5,6 +5,8 @@
 //! impossible. An event that is fixed by someone else (the origin, a contingent event) is never merged with another
 //! such event: that requirement stays, and the controllability check says what is wrong with it.
 
+use std::collections::BTreeSet;
+
 use petgraph::unionfind::UnionFind;
 
 use crate::conflict::{Conflict, Part, Share};
@@ -32,10 +34,15 @@ struct Join {
 
 /// Merges the events joined by [0, 0] requirements (union-find). Every name is kept.
 pub fn merge(network: &Network) -> Merged {
+    merge_but(network, &BTreeSet::new())
+}
+
+/// The same, but some requirements are left to be requirements.
+pub(crate) fn merge_but(network: &Network, apart: &BTreeSet<usize>) -> Merged {
     // A join that would let a contingent link lead back to its own start is left out. Looking for that is quadratic
     // in long chains, and almost no network has one, so look only if the quick way runs into it.
-    merge_with(network, Caution::Quick).unwrap_or_else(|_| {
-        merge_with(network, Caution::KeepLinksAcyclic)
+    merge_with(network, apart, Caution::Quick).unwrap_or_else(|_| {
+        merge_with(network, apart, Caution::KeepLinksAcyclic)
             .unwrap_or_else(|errors| unreachable!("merging keeps a network valid: {errors:?}"))
     })
 }
@@ -46,7 +53,11 @@ enum Caution {
     KeepLinksAcyclic,
 }
 
-fn merge_with(network: &Network, caution: Caution) -> Result<Merged, Vec<ModelError>> {
+fn merge_with(
+    network: &Network,
+    apart: &BTreeSet<usize>,
+    caution: Caution,
+) -> Result<Merged, Vec<ModelError>> {
     let count = network.events().len();
     let mut classes = Classes::new(network);
     let mut tree: Vec<Vec<Join>> = vec![Vec::new(); count];
@@ -54,6 +65,7 @@ fn merge_with(network: &Network, caution: Caution) -> Result<Merged, Vec<ModelEr
         let zero = Bound::Finite(Duration::ZERO);
         if requirement.lower == zero
             && requirement.upper == zero
+            && !apart.contains(&index)
             && (caution == Caution::Quick || !classes.would_close_a_cycle(network, requirement))
             && classes.join(requirement.from, requirement.to)
         {

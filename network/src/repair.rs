@@ -1,0 +1,244 @@
+//! What would make a network controllable: proven changes of one bound or several, the least first.
+//!
+//! After P. Yu and B. Williams, *Continuously relaxing over-constrained conditional temporal problems*, IJCAI 2013; P. Yu,
+//! C. Fang, B. Williams, *Resolving uncontrollable conditional temporal problems using continuous relaxations*, ICAPS 2014;
+//! J. Cui and others, *Optimising bounds in simple temporal networks with uncertainty under dynamic controllability
+//! constraints*, ICAPS 2015; N. Bhargava, T. Vaquero, B. Williams, *Faster conflict generation for dynamic controllability*,
+//! IJCAI 2017.
+//!
+//! A conflict says what must hold of the changes for it to be settled: one of a few linear inequalities (`clause`). The least
+//! changes that keep all that is known so far come from a linear program (`program`); the network is changed so and asked
+//! again; the answer is the next conflict, or "yes" (`search`). Other repairs come of forbidding a bound of one that was found
+//! (K. Murty, 1968; E. Lawler, 1972).
+
+mod clause;
+mod lever;
+mod program;
+mod search;
+
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
+
+use crate::check::{Verdict, check};
+use crate::conflict::Part;
+use crate::least::{could_settle, least_changes};
+use crate::model::Network;
+use crate::stnu::TooLarge;
+use crate::time::{Bound, Duration};
+use crate::vary::{Change, Knob};
+
+use search::Search;
+
+/// What changing a bound by its own size costs, as [`Allowed::relative`] has it.
+pub const ONE: u128 = 1_000_000_000_000_000_000;
+
+/// A knob that may be turned, towards what is easier.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Allowed {
+    /// What may be turned, up to its limit if it has one.
+    pub knob: Knob,
+    /// What a microsecond costs. Nothing is for free: 0 counts as 1.
+    pub weight: u64,
+    /// Values are whole multiples of this where that is within the limit. Nothing counts as a microsecond.
+    pub unit: Duration,
+}
+
+impl Allowed {
+    /// With the cost of a relative change: [`ONE`] for a change by the size of the bound itself, or of a unit if that is
+    /// more. The size of a delay without end is that of the longest one that would still be of some use.
+    pub fn relative(network: &Network, knob: Knob, unit: Duration) -> Allowed {
+        let value = match knob.value(network) {
+            Bound::Finite(value) => value.as_micros().saturating_abs(),
+            Bound::Infinite => lever::longest_useful(network, &knob),
+        };
+        let size = value.max(unit.as_micros()).max(1);
+        Allowed { knob, weight: ONE as u64 / size as u64, unit }
+    }
+}
+
+/// How much to look for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// So many repairs at most.
+    pub limit: usize,
+    /// So many linear programs and verdicts at most in the search for joint changes.
+    pub rounds: usize,
+}
+
+impl Default for Options {
+    fn default() -> Options {
+        Options { limit: 5, rounds: 1000 }
+    }
+}
+
+/// Changes with which the network is controllable, and without any one of them is not.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Repair {
+    /// In the order of their knobs. No bound is in two of them.
+    pub changes: Vec<Change>,
+    /// What they cost: for each its amount in microseconds times its weight. A delay that had no end counts from the longest
+    /// one that would be of any use.
+    pub cost: u128,
+}
+
+/// What was found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Repairs {
+    /// By cost, then by number of changes, then by order of the knobs. No two turn the same knobs.
+    pub repairs: Vec<Repair>,
+    /// The knobs that cannot settle it alone, in order.
+    pub not_alone: Vec<Knob>,
+    /// Whether there could be more, or better ones.
+    pub ended: Ended,
+}
+
+/// Why the search ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ended {
+    /// There is nothing cheaper, or there are as many as were asked for.
+    Complete,
+    /// The rounds were used up.
+    OutOfRounds,
+}
+
+/// The cheapest repairs; `None` if the network is controllable as it is.
+///
+/// Each is proven: with its changes [`check()`] says "yes", and with any one of them less by a unit (by a microsecond, where it
+/// is between the last whole unit and its limit; left out, where that is all there is) it says "no". The first is the cheapest of
+/// all of whole units, if the search ended [`Ended::Complete`], no chain has late news, and no requirement that may change
+/// makes an event one with something heard late. In a chain with late news the lengths of the reduction may switch at any change, and what a conflict
+/// says about other values is a guess; the repair is proven and no change in it can be less, but another may be cheaper.
+///
+/// The second differs from the first in that it does without one of its knobs, and so on: a repair that only adds a knob to
+/// those of a cheaper one is not looked for. A change of one knob that is enough alone is always looked for.
+///
+/// A bound in two knobs is changed by the first of them, in order, where several change. The order of `allowed` is of no
+/// importance.
+///
+/// ```
+/// use kirk_network::repair::{Allowed, Options, ours, repairs};
+/// use kirk_network::{Duration, json};
+///
+/// // Steps of 40 s and 30 s are to take no more than 55 s, and the second no more than 20 s.
+/// let network = json::read(r#"{"format": "kirk-network/1", "origin": "a", "events": ["a", "b", "c"],
+///     "requirements": [{"from": "a", "to": "b", "lower": 40}, {"from": "b", "to": "c", "lower": 30},
+///                      {"from": "b", "to": "c", "upper": 20}, {"from": "a", "to": "c", "upper": 55}]}"#).unwrap();
+/// let second = Duration::from_secs(1);
+/// let allowed: Vec<_> = ours(&network).into_iter().map(|knob| Allowed::relative(&network, knob, second)).collect();
+/// let found = repairs(&network, &allowed, &Options::default()).unwrap().unwrap();
+/// let shown = |repair: usize| -> Vec<String> {
+///     let changes = found.repairs[repair].changes.iter();
+///     changes.map(|it| format!("{} -> {}", it.from.finite().unwrap(), it.to.finite().unwrap())).collect()
+/// };
+/// assert_eq!(shown(0), ["55 -> 60", "30 -> 20"]);
+/// assert_eq!(shown(1), ["40 -> 35", "30 -> 20"]);
+/// assert_eq!(shown(2), ["30 -> 15"]);
+/// ```
+///
+/// # Errors
+/// [`TooLarge`] if the durations add up to more than 64-bit microseconds can hold.
+pub fn repairs(
+    network: &Network,
+    allowed: &[Allowed],
+    options: &Options,
+) -> Result<Option<Repairs>, TooLarge> {
+    let Verdict::Uncontrollable(conflict) = check(network)? else { return Ok(None) };
+    let mut allowed = allowed.to_vec();
+    allowed.sort();
+    allowed.dedup_by(|a, b| a.knob == b.knob);
+    let could_settle: BTreeSet<Part> = could_settle(network, &conflict).into_iter().collect();
+    let candidates: Vec<Knob> = allowed.iter().map(|it| it.knob.clone()).collect();
+    let (touching, others): (Vec<Knob>, Vec<Knob>) =
+        candidates.into_iter().partition(|knob| knob.parts().iter().any(|part| could_settle.contains(part)));
+    let least = least_changes(network, &touching)?;
+    let mut search = Search::new(network, &allowed, options.rounds);
+    let mut singles: BTreeMap<Knob, Plan> = BTreeMap::new();
+    let mut not_alone = others;
+    for (knob, change) in touching.into_iter().zip(least) {
+        match change.and_then(|change| search.single(&change)) {
+            Some(plan) => _ = singles.insert(knob, plan),
+            None => not_alone.push(knob),
+        }
+    }
+    not_alone.sort();
+    let mut plans = cheapest(&mut search, singles.into_values().collect(), options.limit);
+    if plans.is_empty() && search.gave_up() {
+        plans.extend(search.any());
+    }
+    plans.truncate(options.limit);
+    let repairs = plans.iter().map(|plan| search.repair(plan)).collect();
+    let ended = if search.gave_up() { Ended::OutOfRounds } else { Ended::Complete };
+    Ok(Some(Repairs { repairs, not_alone, ended }))
+}
+
+/// By how much each knob is turned, by its number, in microseconds: those that are turned at all.
+type Plan = BTreeMap<usize, i64>;
+
+/// The knobs of a plan.
+fn knobs(plan: &Plan) -> Vec<usize> {
+    plan.keys().copied().collect()
+}
+
+/// Plans of different knobs in the order of their costs, with those that are known.
+///
+/// What is best without certain knobs costs no less than what is best with them. So the cheapest without knobs of the one
+/// before is next, whichever of them it does without.
+fn cheapest(search: &mut Search<'_>, known: Vec<Plan>, limit: usize) -> Vec<Plan> {
+    let mut plans: BTreeMap<Vec<usize>, Plan> = known.into_iter().map(|plan| (knobs(&plan), plan)).collect();
+    let mut taken: BTreeSet<Vec<usize>> = BTreeSet::new();
+    let mut seen: BTreeSet<BTreeSet<usize>> = BTreeSet::new();
+    let mut open = BinaryHeap::from([Reverse((0_u128, BTreeSet::new(), None::<Plan>))]);
+    while taken.len() < limit
+        && let Some(Reverse((_, without, plan))) = open.pop()
+    {
+        let Some(plan) = plan else {
+            let is_free = |plan: &&Plan| plan.keys().all(|knob| !without.contains(knob));
+            let best = plans.values().filter(is_free).min_by_key(|plan| (search.cost(plan), plan.len()));
+            if let Some(plan) = search.least(&without, best.cloned()) {
+                plans.insert(knobs(&plan), plan.clone());
+                open.push(Reverse((search.cost(&plan), without, Some(plan))));
+            }
+            continue;
+        };
+        taken.insert(knobs(&plan));
+        for &knob in plan.keys() {
+            let mut without = without.clone();
+            without.insert(knob);
+            if seen.insert(without.clone()) {
+                open.push(Reverse((search.cost(&plan), without, None)));
+            }
+        }
+    }
+    let mut plans: Vec<Plan> = plans.into_values().collect();
+    plans.sort_by_cached_key(|plan| (search.cost(plan), plan.len(), knobs(plan)));
+    plans
+}
+
+/// The bounds that are ours: those of requirements, and by when news must be here. None is to lose its sense: what takes time
+/// is never to take less than none, nor to come before what it comes after.
+pub fn ours(network: &Network) -> Vec<Knob> {
+    let requirements = network.requirements().iter().enumerate().flat_map(|(index, requirement)| {
+        let knob = |part, value: Bound, meant: fn(Duration) -> bool| {
+            let value = value.finite()?;
+            let knob = Knob::of(part)?;
+            Some(if meant(value) { knob.limited(Duration::ZERO) } else { knob })
+        };
+        let lower = knob(Part::RequirementLower(index), requirement.lower, |lower| lower >= Duration::ZERO);
+        let order = requirement.lower.finite().is_none();
+        let upper = match order {
+            true => knob(Part::RequirementUpper(index), requirement.upper, |upper| upper <= Duration::ZERO),
+            false => knob(Part::RequirementUpper(index), requirement.upper, |_| false),
+        };
+        [lower, upper].into_iter().flatten()
+    });
+    let late = |index: &usize| network.contingents()[*index].delay.max != Bound::Finite(Duration::ZERO);
+    let news =
+        (0..network.contingents().len()).filter(late).filter_map(|link| Knob::of(Part::DelayMax(link)));
+    requirements.chain(news).collect()
+}
+
+/// The bounds that are Nature's: of the durations she chooses.
+pub fn natures(network: &Network) -> Vec<Knob> {
+    let links = 0..network.contingents().len();
+    links.flat_map(|link| [Part::LinkLower(link), Part::LinkUpper(link)]).filter_map(Knob::of).collect()
+}

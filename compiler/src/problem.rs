@@ -44,6 +44,11 @@ impl Problems {
         }
     }
 
+    /// Reports all of these.
+    pub fn extend(&mut self, problems: impl IntoIterator<Item = Diagnostic>) {
+        problems.into_iter().for_each(|problem| self.push(problem));
+    }
+
     /// Drops what is reported from now on about this form, which is damaged; that must have been reported.
     pub fn mute(&mut self, form: Span) {
         self.muted.insert((form.source, form.start, form.end));

@@ -154,10 +154,20 @@ pub(super) fn bounds(form: &Form, problems: &mut Problems) -> Option<Bounds> {
 
 /// `:lower-bound l :upper-bound u`.
 pub(super) fn limits(forms: &[Form], span: Span, problems: &mut Problems) -> Bounds {
-    let [lower, upper] = options(forms, LIMITS, CONSTRAINT, problems);
-    let [low, high] = Limits::Duration.words();
-    let lower = lower.map(|form| amount(form, low, problems));
-    let upper = upper.map(|form| amount(form, high, problems));
+    let given = options(forms, LIMITS, CONSTRAINT, problems);
+    interval(given, Limits::Duration, span, problems)
+}
+
+/// The bounds that are given, as far as they are.
+pub(super) fn interval(
+    [lower, upper]: [Option<&Form>; 2],
+    limits: Limits,
+    span: Span,
+    problems: &mut Problems,
+) -> Bounds {
+    let [least, most] = limits.words();
+    let lower = lower.map(|form| amount(form, least, problems));
+    let upper = upper.map(|form| amount(form, most, problems));
     Bounds { lower, upper, span }
 }
 
@@ -182,10 +192,7 @@ fn delay(form: &Form, operator: &Form, rest: &[Form], problems: &mut Problems) -
             return None;
         }
     };
-    let [low, high] = Limits::Wait.words();
-    let lower = amount(lower, low, problems);
-    let upper = amount(upper, high, problems);
-    let bounds = Bounds { lower: Some(lower), upper: Some(upper), span: form.span };
+    let bounds = interval([Some(lower), Some(upper)], Limits::Wait, form.span, problems);
     Some(Body::Delay(Wait { bounds, span: form.span }))
 }
 

@@ -1,12 +1,10 @@
 //! `(declare (primitive) (duration ...) (requires ...) (effect ...))`.
 
-use super::amount::amount;
+use super::body::interval;
 use super::condition::condition;
 use super::options::{flag, pairs};
-use super::slips::{self, expected, twice};
-use crate::ast::{Bounds, ControlProgram, DurationOf, Limits};
-use crate::code::Code;
-use crate::diagnostic::Diagnostic;
+use super::slips;
+use crate::ast::{Condition, ControlProgram, DurationOf, Limits};
 use crate::form::Form;
 use crate::problem::Problems;
 use crate::words::keywords;
@@ -23,40 +21,19 @@ pub(super) fn declare(declarations: &[Form], program: &mut ControlProgram, probl
     while let Some((item, after)) = rest.split_first() {
         rest = after;
         match item.call() {
-            Some(("primitive", extra)) => {
+            Some(("primitive", inside)) => {
                 program.primitive = true;
-                if let Some(extra) = extra.first() {
-                    problems.push(slips::declaration::primitive_with(extra));
-                }
+                problems.extend(inside.first().map(slips::declaration::primitive_with));
             }
             Some(("duration", inside)) => match &program.duration {
-                Some(first) => {
-                    let problem = twice("the duration", first.span, item.span);
-                    problems.push(
-                        problem.take_out("the first one", first.span).take_out("the second one", item.span),
-                    );
-                }
+                Some(first) => problems.push(slips::declaration::second_duration(first.span, item.span)),
                 None => {
                     program.duration = duration(item, inside, problems);
                     program.damaged |= program.duration.is_none();
                 }
             },
-            Some((word @ ("requires" | "effect"), conditions)) => {
-                let slot = if word == "requires" { &mut program.requires } else { &mut program.effect };
-                match conditions {
-                    [one] if slot.is_none() => *slot = condition(one, problems),
-                    [_] => problems.push(
-                        Diagnostic::error(Code::KeywordTwice, item.span, format!("`{word}` is given twice"))
-                            .primary("again here")
-                            .help("Put the conditions into one: `(and ... ...)`."),
-                    ),
-                    _ => problems.push(expected(
-                        item,
-                        &format!("`{word}` takes one condition"),
-                        "Several conditions are joined by `(and ... ...)`.",
-                    )),
-                }
-            }
+            Some(("requires", inside)) => only(&mut program.requires, item, inside, problems),
+            Some(("effect", inside)) => only(&mut program.effect, item, inside, problems),
             // Lisp's way to say that a parameter is unused on purpose: nothing follows from it.
             Some(("ignore" | "ignorable", _)) => {}
             _ => rest = slips::declaration::no_declaration(item, rest, program, problems),
@@ -64,15 +41,23 @@ pub(super) fn declare(declarations: &[Form], program: &mut ControlProgram, probl
     }
 }
 
+/// The one condition of `requires` or of `effect`, if there is none yet.
+fn only(known: &mut Option<Condition>, item: &Form, inside: &[Form], problems: &mut Problems) {
+    match inside {
+        [one] if known.is_none() => *known = condition(one, problems),
+        _ => problems.extend(slips::declaration::not_one_condition(item, inside)),
+    }
+}
+
 /// `(duration (simple :lower-bound l :upper-bound u) :contingent t)`.
-fn duration(form: &Form, items: &[Form], problems: &mut Problems) -> Option<DurationOf> {
-    if let Some((simple, rest)) = items.split_first()
-        && let Some(("simple", inside)) = simple.call()
-        && let (Some(bounds), Some([contingent])) = (pairs(inside, BOUNDS), pairs(rest, CHOICE))
+fn duration(form: &Form, inside: &[Form], problems: &mut Problems) -> Option<DurationOf> {
+    if let Some((simple, choice)) = inside.split_first()
+        && let Some(("simple", bounds)) = simple.call()
+        && let (Some(bounds), Some([contingent])) = (pairs(bounds, BOUNDS), pairs(choice, CHOICE))
     {
         return Some(Written { bounds, contingent }.duration(form, simple, problems));
     }
-    slips::declaration::no_duration(form, items, problems)
+    slips::declaration::no_duration(form, inside, problems)
 }
 
 /// The values given for a duration.
@@ -84,21 +69,15 @@ pub(super) struct Written<'a> {
 impl Written<'_> {
     pub(super) fn duration(&self, form: &Form, simple: &Form, problems: &mut Problems) -> DurationOf {
         let [lower, upper, min, max] = self.bounds;
-        let [shortest, longest] = Limits::Duration.words();
-        let [soonest, latest] = Limits::ObservationDelay.words();
-        let given = |form: Option<&Form>| form.is_some_and(|form| !form.is_error());
-        let delay = (given(min) || given(max)).then(|| Bounds {
-            lower: min.map(|form| amount(form, soonest, problems)),
-            upper: max.map(|form| amount(form, latest, problems)),
-            span: min.or(max).map_or(simple.span, |form| form.span),
-        });
-        let bounds = Bounds {
-            lower: lower.map(|form| amount(form, shortest, problems)),
-            upper: upper.map(|form| amount(form, longest, problems)),
-            span: simple.span,
-        };
-        let contingent_nil = self.contingent.filter(|form| form.word() == Some("nil")).map(|nil| nil.span);
-        let contingent = self.contingent.is_some_and(|form| flag(form, "contingent", problems));
-        DurationOf { bounds, contingent, contingent_nil, delay, span: form.span }
+        let is_delayed = [min, max].into_iter().flatten().any(|form| !form.is_error());
+        let delayed = min.or(max).map_or(simple.span, |form| form.span);
+        let choice = self.contingent;
+        DurationOf {
+            delay: is_delayed.then(|| interval([min, max], Limits::ObservationDelay, delayed, problems)),
+            bounds: interval([lower, upper], Limits::Duration, simple.span, problems),
+            contingent_nil: choice.filter(|form| form.word() == Some("nil")).map(|nil| nil.span),
+            contingent: choice.is_some_and(|form| flag(form, CHOICE[0], problems)),
+            span: form.span,
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! Declarations without their `declare`, and what fell out of a duration or never was in one.
 
-use super::{around, expected, head, one_of, text_of, unexpected};
+use super::{around, expected, head, one_of, text_of, twice, unexpected};
 use crate::ast::{Amount, AmountKind, ControlProgram, DurationOf};
 use crate::code::Code;
 use crate::diagnostic::{Diagnostic, Edit};
@@ -21,6 +21,27 @@ const ANYWHERE: [&str; 5] = [BOUNDS[0], BOUNDS[1], BOUNDS[2], BOUNDS[3], CHOICE[
 /// `(primitive t)`.
 pub(in crate::parse) fn primitive_with(extra: &Form) -> Diagnostic {
     unexpected(extra, "`)`", "`(primitive)` stands alone; the duration is a declaration of its own.")
+}
+
+/// A duration when there is one already.
+pub(in crate::parse) fn second_duration(first: Span, again: Span) -> Diagnostic {
+    let problem = twice("the duration", first, again);
+    problem.take_out("the first one", first).take_out("the second one", again)
+}
+
+/// What stands in a `requires` or an `effect` that is not the first or has not just one condition.
+pub(in crate::parse) fn not_one_condition(item: &Form, conditions: &[Form]) -> Option<Diagnostic> {
+    let (word, _) = item.call()?;
+    Some(match conditions {
+        [_] => Diagnostic::error(Code::KeywordTwice, item.span, format!("`{word}` is given twice"))
+            .primary("again here")
+            .help("Put the conditions into one: `(and ... ...)`."),
+        _ => expected(
+            item,
+            &format!("`{word}` takes one condition"),
+            "Several conditions are joined by `(and ... ...)`.",
+        ),
+    })
 }
 
 /// Reports what is no declaration; the forms after what belongs to it.
@@ -145,32 +166,32 @@ pub(in crate::parse) fn no_duration(
         problems.push(expected(form, "this duration is empty", SHAPE));
         return None;
     };
-    let Some(("simple", inside)) = simple.call() else {
+    let Some(("simple", bounds)) = simple.call() else {
         if !simple.is_error() {
             problems.push(no_simple(simple, rest, items));
         }
         return None;
     };
-    let [mut lower, mut upper, mut min, mut max, misplaced] = options(inside, ANYWHERE, "simple", problems);
-    let outside = |form: &Form| form.keyword().is_some_and(|word| BOUNDS.contains(&word));
-    let contingent = match rest.iter().position(outside) {
+    let inside = options(bounds, ANYWHERE, "simple", problems);
+    let is_bound = |form: &Form| form.keyword().is_some_and(|word| BOUNDS.contains(&word));
+    let outside = match rest.iter().position(is_bound) {
         // Bounds after the `)` of `simple`: the first says it for all.
         Some(first) => {
             problems.push(closed_early(simple, rest, first));
-            let [low, high, least, most, contingent] = options(rest, ANYWHERE, "simple", problems);
-            (lower, upper, min, max) = (lower.or(low), upper.or(high), min.or(least), max.or(most));
-            contingent
+            options(rest, ANYWHERE, "simple", problems)
         }
         None => {
             let [contingent] = options(rest, CHOICE, "duration", problems);
-            contingent
+            [None, None, None, None, contingent]
         }
     };
+    let [.., misplaced] = inside;
+    let [.., contingent] = outside;
     if let (Some(value), None) = (misplaced.filter(|form| !form.is_error()), contingent) {
-        problems.push(too_far_in(simple, inside, value));
+        problems.push(too_far_in(simple, bounds, value));
     }
-    let written = Written { bounds: [lower, upper, min, max], contingent: contingent.or(misplaced) };
-    Some(written.duration(form, simple, problems))
+    let bounds = std::array::from_fn(|slot| inside[slot].or(outside[slot]));
+    Some(Written { bounds, contingent: contingent.or(misplaced) }.duration(form, simple, problems))
 }
 
 /// `:contingent t` inside of `simple`.

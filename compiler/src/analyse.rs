@@ -26,7 +26,6 @@ use names::Names;
 use symbols::{SymbolKind, Uses};
 
 pub(crate) use bounds::{negative, reversed};
-pub(crate) use calls::calls_of;
 
 /// Resolves all names, checks all declarations, and finds the program to start from.
 pub(crate) fn analyse(program: &ast::Program, options: &Options, problems: &mut Problems) -> (Model, Uses) {

@@ -205,6 +205,22 @@ pub struct EventOf {
     pub span: Span,
 }
 
+impl Program {
+    /// The programs it calls, with the places of the calls, in source order.
+    pub fn calls(&self) -> Vec<(usize, Span)> {
+        let Work::Body(body) = &self.work else { return Vec::new() };
+        let mut found = Vec::new();
+        let mut open: Vec<&Body> = body.iter().rev().collect();
+        while let Some(body) = open.pop() {
+            if let Body::Call { program, span, .. } = body {
+                found.push((*program, *span));
+            }
+            open.extend(body.parts().iter().rev());
+        }
+        found
+    }
+}
+
 impl Body {
     /// The forms inside it.
     pub fn parts(&self) -> &[Body] {

@@ -8,7 +8,7 @@
 
 use kirk_compiler::ast::Program;
 use kirk_compiler::form::Form;
-use kirk_compiler::typed::{Body, Model, Work};
+use kirk_compiler::typed::{Model, Work};
 use kirk_compiler::{Code, Diagnostic, Front, Options, Severity, Source, Span, Symbols, front_in_order};
 
 use crate::lines::Lines;
@@ -182,17 +182,8 @@ fn roots(model: &Model) -> Vec<usize> {
         return mains;
     }
     let mut called = vec![false; model.programs.len()];
-    for program in &model.programs {
-        let mut open: Vec<&Body> = match &program.work {
-            Work::Body(body) => body.iter().collect(),
-            Work::Primitive(_) => Vec::new(),
-        };
-        while let Some(body) = open.pop() {
-            if let Body::Call { program, .. } = body {
-                called[*program] = true;
-            }
-            open.extend(body.parts());
-        }
+    for (target, _) in model.programs.iter().flat_map(|program| program.calls()) {
+        called[target] = true;
     }
     let is_root = |&index: &usize| {
         let program = &model.programs[index];

@@ -7,12 +7,11 @@ use crate::diagnostic::Diagnostic;
 use crate::form::clip;
 use crate::problem::Problems;
 use crate::source::Span;
-use crate::typed::{Body, Model, Work};
+use crate::typed::{Model, Program, Work};
 
 /// Reports every call that leads back to the program it stands in.
 pub(super) fn check_recursion(model: &Model, problems: &mut Problems) {
-    let calls: Vec<Vec<(usize, Span)>> =
-        (0..model.programs.len()).map(|index| calls_of(model, index)).collect();
+    let calls: Vec<Vec<(usize, Span)>> = model.programs.iter().map(Program::calls).collect();
     // 0: not seen, 1: on the walk, 2: done.
     let mut state = vec![0_u8; calls.len()];
     for start in 0..calls.len() {
@@ -58,8 +57,7 @@ pub(super) fn check_use(
     if problems.has_errors() {
         return;
     }
-    let calls: Vec<Vec<(usize, Span)>> =
-        (0..model.programs.len()).map(|index| calls_of(model, index)).collect();
+    let calls: Vec<Vec<(usize, Span)>> = model.programs.iter().map(Program::calls).collect();
     let mut called = vec![false; calls.len()];
     for (target, _) in calls.iter().flatten() {
         called[*target] = true;
@@ -101,22 +99,6 @@ pub(super) fn check_use(
             .help(format!("Nothing that `{entry_name}` does leads to it. To start from it, use `{choice}`.")),
         );
     }
-}
-
-/// The programs a program calls, with the places of the calls.
-pub(crate) fn calls_of(model: &Model, index: usize) -> Vec<(usize, Span)> {
-    let mut found = Vec::new();
-    let mut open: Vec<&Body> = match &model.programs[index].work {
-        Work::Body(body) => body.iter().rev().collect(),
-        Work::Primitive(_) => Vec::new(),
-    };
-    while let Some(body) = open.pop() {
-        if let Body::Call { program, span, .. } = body {
-            found.push((*program, *span));
-        }
-        open.extend(body.parts().iter().rev());
-    }
-    found
 }
 
 fn recursion(model: &Model, cycle: &[usize], call: Span) -> Diagnostic {

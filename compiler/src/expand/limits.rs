@@ -1,6 +1,5 @@
 //! How far a program may unfold, found out before it is unfolded: two calls of two calls of two calls ... double each time.
 
-use crate::analyse::calls_of;
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::episode::{MAX_DEPTH, MAX_EPISODES};
@@ -16,9 +15,8 @@ pub(super) fn check(model: &Model, entry: usize, problems: &mut Problems) -> boo
     let program = &model.programs[entry];
     let name = clip(&program.name.name);
     if size.episodes > MAX_EPISODES {
-        let largest = calls_of(model, entry)
-            .into_iter()
-            .max_by_key(|(target, _)| sizes[*target].map(|size| size.episodes));
+        let largest =
+            program.calls().into_iter().max_by_key(|(target, _)| sizes[*target].map(|size| size.episodes));
         let count = match size.episodes {
             u64::MAX => "more episodes than can be counted".to_string(),
             episodes => format!("{episodes} episodes"),
@@ -65,12 +63,8 @@ fn sizes(model: &Model, entry: usize) -> Vec<Option<Size>> {
     let mut open = vec![entry];
     while let Some(program) = open.last().copied() {
         if !std::mem::replace(&mut seen[program], true) {
-            open.extend(
-                calls_of(model, program)
-                    .into_iter()
-                    .map(|(target, _)| target)
-                    .filter(|target| !seen[*target]),
-            );
+            let calls = model.programs[program].calls().into_iter();
+            open.extend(calls.map(|(target, _)| target).filter(|target| !seen[*target]));
             continue;
         }
         open.pop();

@@ -264,7 +264,7 @@ fn program(sources: Vec<Source>, selection: &Selection) -> Input {
     let options = Options { package: selection.package.clone(), entry: selection.entry().to_string() };
     let mut compilation = compile(&sources, &options);
     let diagnostics = std::mem::take(&mut compilation.diagnostics);
-    let (network, origins) = match compilation.plan.take() {
+    let (network, origins) = match compilation.lowered.take() {
         Some(plan) => (Some(plan.network), Some((plan.origins, plan.entry))),
         None => (None, None),
     };

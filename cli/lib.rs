@@ -17,7 +17,7 @@
 //! // From source to network: every problem with its place, or a mission.
 //! let compilation = compile(&[Source::new("robot.rmpl", text)], &kirk::Options::default());
 //! assert_eq!(compilation.diagnostics, []);
-//! let mission = compilation.plan.expect("no errors, so there is a mission");
+//! let mission = compilation.lowered.expect("no errors, so there is a mission");
 //!
 //! // From network to proof: `Err` has the constraints that cannot all be honoured.
 //! let plan = Plan::new(&mission.network).expect("it can be executed whatever happens");

@@ -10,7 +10,7 @@ use kirk::{Dispatcher, NoPlan, Options, Plan, Settings, Source, Strategy, Time, 
 fn main() -> Result<(), String> {
     let text = include_str!("rmpl/robot.rmpl");
     let compilation = compile(&[Source::new("robot.rmpl", text)], &Options::default());
-    let Some(mission) = compilation.plan else {
+    let Some(mission) = compilation.lowered else {
         return Err(compilation.diagnostics.iter().map(|problem| format!("{}\n", problem.message)).collect());
     };
     let plan = match Plan::new(&mission.network) {

@@ -17,8 +17,8 @@ use proptest::prelude::*;
 fn check_program(text: &str) {
     let compiled = compile(&[Source::new("x", text)], &Options::default());
     let mut said = compiled.diagnostics;
-    assert_eq!(compiled.plan.is_none(), said.iter().any(|d| d.severity == Severity::Error), "{text}");
-    if let Some(plan) = compiled.plan
+    assert_eq!(compiled.lowered.is_none(), said.iter().any(|d| d.severity == Severity::Error), "{text}");
+    if let Some(plan) = compiled.lowered
         && let Ok(Verdict::Uncontrollable(conflict)) = check(&plan.network)
     {
         said.push(explain_conflict(&conflict, &plan.network, &plan.origins, plan.entry));
@@ -68,7 +68,7 @@ static NETWORKS: LazyLock<[Vec<String>; 3]> =
     LazyLock::new(|| READERS.map(|(extension, _)| files("tests/networks", &[extension])));
 static ROBOT: LazyLock<(Network, String)> = LazyLock::new(|| {
     let mission = fs::read_to_string("examples/rmpl/robot.rmpl").unwrap();
-    let network = compile(&[Source::new("x", mission)], &Options::default()).plan.unwrap().network;
+    let network = compile(&[Source::new("x", mission)], &Options::default()).lowered.unwrap().network;
     let plan = kirk_runtime::Plan::new(&network).unwrap();
     let execution = kirk_runtime::simulate(&plan, "main", &kirk_runtime::Simulation::default()).unwrap();
     (network, serde_json::to_string(&execution).unwrap())

@@ -18,7 +18,7 @@ fn by_hand(rovers: u32, antennas: u32) -> Network {
         .replace(eight, &format!("(defconstant +rovers+ {rovers})"))
         .replace(two, &format!("(defconstant +antennas+ {antennas})"));
     let compiled = compile(&[Source::new("antennas.rmpl", text)], &Options::default());
-    merge(&compiled.plan.unwrap_or_else(|| panic!("{:?}", compiled.diagnostics)).network).network
+    merge(&compiled.lowered.unwrap_or_else(|| panic!("{:?}", compiled.diagnostics)).network).network
 }
 
 /// What makes the figure: how many links there are, how many of them are heard late, and for each end of a test how

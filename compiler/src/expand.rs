@@ -71,13 +71,13 @@ struct Expander<'a> {
 }
 
 /// Where in a program the unfolding is, and how the program was called.
-struct Place<'a> {
+struct Frame<'a> {
     name: &'a str,
     program: &'a Program,
     call: Span,
     internal: u32,
     scope: usize,
-    /// The values of the parameters, and of the names of `let` and `dotimes` around the place.
+    /// The values of the parameters, and of the names of `let` and `dotimes` around the place at hand.
     variables: Vec<Value>,
 }
 
@@ -111,10 +111,10 @@ impl<'a> Expander<'a> {
         let named = Named { scope: around, target, arguments: given, episode: episode.name.clone(), span };
         self.scopes.add(named, self.problems);
         let scope = self.scopes.open(Some(around));
-        let mut place = Place { name: &name, program, call: span, internal: 0, scope, variables: arguments };
+        let mut frame = Frame { name: &name, program, call: span, internal: 0, scope, variables: arguments };
         match &program.work {
-            Work::Primitive(timing) => self.primitive(&mut episode, timing, &place),
-            Work::Body(body) => episode.parts = self.parts(body, &mut place),
+            Work::Primitive(timing) => self.primitive(&mut episode, timing, &frame),
+            Work::Body(body) => episode.parts = self.parts(body, &mut frame),
         }
         self.scopes.close(scope);
         if outside.is_none() {
@@ -123,84 +123,84 @@ impl<'a> Expander<'a> {
         episode
     }
 
-    fn primitive(&mut self, episode: &mut Episode, timing: &Timing, place: &Place<'_>) {
+    fn primitive(&mut self, episode: &mut Episode, timing: &Timing, frame: &Frame<'_>) {
         episode.kind = Kind::Primitive;
-        episode.duration = Some(self.interval(&timing.bounds, place, Limits::Duration));
+        episode.duration = Some(self.interval(&timing.bounds, frame, Limits::Duration));
         episode.contingent = timing.contingent;
         if timing.contingent {
             if episode.duration.as_ref().is_some_and(|duration| duration.upper == Bound::Infinite) {
-                let name = clip(&place.program.name.name);
+                let name = clip(&frame.program.name.name);
                 let message = format!("the contingent duration of `{name}` has no upper bound");
                 self.problems.push(
                     Diagnostic::error(Code::ContingentUnbounded, timing.bounds.upper.span, message)
                         .primary("Nature could take forever")
-                        .label(place.call, "with the arguments of this call"),
+                        .label(frame.call, "with the arguments of this call"),
                 );
             }
-            let delay = self.interval(&timing.delay, place, Limits::ObservationDelay);
+            let delay = self.interval(&timing.delay, frame, Limits::ObservationDelay);
             if delay.lower != Duration::ZERO || delay.upper != Bound::Finite(Duration::ZERO) {
                 episode.delay = Some(delay);
             }
         }
     }
 
-    fn parts(&mut self, body: &'a [Body], place: &mut Place<'_>) -> Vec<Episode> {
+    fn parts(&mut self, body: &'a [Body], frame: &mut Frame<'_>) -> Vec<Episode> {
         let mut parts = Vec::with_capacity(body.len());
-        self.unfold(body, place, &mut parts);
+        self.unfold(body, frame, &mut parts);
         parts
     }
 
     /// Adds what the forms of a body unfold to: one episode for most, none for `between`, several for `dotimes` and `let`.
-    fn unfold(&mut self, body: &'a [Body], place: &mut Place<'_>, parts: &mut Vec<Episode>) {
+    fn unfold(&mut self, body: &'a [Body], frame: &mut Frame<'_>, parts: &mut Vec<Episode>) {
         for form in body {
             if self.exhausted {
                 return;
             }
             match form {
                 Body::Call { program, arguments, span } => {
-                    let arguments = self.values(arguments, place);
-                    parts.push(self.occurrence(*program, arguments, *span, Some(place.scope)));
+                    let arguments = self.values(arguments, frame);
+                    parts.push(self.occurrence(*program, arguments, *span, Some(frame.scope)));
                 }
                 Body::Group { .. } | Body::Within { .. } | Body::Delay { .. } => {
-                    parts.push(self.form(form, place));
+                    parts.push(self.form(form, frame));
                 }
-                Body::Let { values, body } => self.binding(values, body, place, parts),
+                Body::Let { values, body } => self.binding(values, body, frame, parts),
                 Body::Repeat { count, variable, body, operator } => {
-                    let count = self.count(count, place);
-                    self.repeat(count, (*variable, *operator), body, place, parts);
+                    let count = self.count(count, frame);
+                    self.repeat(count, (*variable, *operator), body, frame, parts);
                 }
                 Body::Label { name, arguments, body, operator } => {
-                    let arguments = self.values(arguments, place);
-                    parts.push(self.label(name, arguments, body, *operator, place));
+                    let arguments = self.values(arguments, frame);
+                    parts.push(self.label(name, arguments, body, *operator, frame));
                 }
-                Body::Between(between) => self.between(between, place),
+                Body::Between(between) => self.between(between, frame),
             }
         }
     }
 
     /// An episode for a form no user gave a name.
     #[inline(never)]
-    fn form(&mut self, form: &'a Body, place: &mut Place<'_>) -> Episode {
+    fn form(&mut self, form: &'a Body, frame: &mut Frame<'_>) -> Episode {
         match form {
             Body::Group { parallel, slack, body, operator } => {
                 let kind = if *parallel { Kind::Parallel } else { Kind::Sequence };
-                let mut episode = self.internal(kind, *operator, place);
+                let mut episode = self.internal(kind, *operator, frame);
                 episode.slack = Some(*slack);
-                episode.parts = self.parts(body, place);
+                episode.parts = self.parts(body, frame);
                 episode
             }
             Body::Within { bounds, body, operator } => {
-                let mut episode = self.internal(Kind::WithTemporalConstraint, *operator, place);
-                episode.duration = Some(self.interval(bounds, place, Limits::Duration));
-                episode.parts = self.parts(body, place);
+                let mut episode = self.internal(Kind::WithTemporalConstraint, *operator, frame);
+                episode.duration = Some(self.interval(bounds, frame, Limits::Duration));
+                episode.parts = self.parts(body, frame);
                 episode
             }
             Body::Delay { bounds, span } => {
-                let mut episode = self.internal(Kind::Delay, *span, place);
-                episode.duration = Some(self.interval(bounds, place, Limits::Wait));
+                let mut episode = self.internal(Kind::Delay, *span, frame);
+                episode.duration = Some(self.interval(bounds, frame, Limits::Wait));
                 episode
             }
-            _ => self.internal(Kind::Sequence, place.call, place),
+            _ => self.internal(Kind::Sequence, frame.call, frame),
         }
     }
 
@@ -209,14 +209,14 @@ impl<'a> Expander<'a> {
         &mut self,
         values: &[Expression],
         body: &'a [Body],
-        place: &mut Place<'_>,
+        frame: &mut Frame<'_>,
         parts: &mut Vec<Episode>,
     ) {
-        let values = self.values(values, place);
-        let outside = place.variables.len();
-        place.variables.extend(values);
-        self.unfold(body, place, parts);
-        place.variables.truncate(outside);
+        let values = self.values(values, frame);
+        let outside = frame.variables.len();
+        frame.variables.extend(values);
+        self.unfold(body, frame, parts);
+        frame.variables.truncate(outside);
     }
 
     #[inline(never)]
@@ -225,27 +225,27 @@ impl<'a> Expander<'a> {
         count: u64,
         (variable, operator): (Span, Span),
         body: &'a [Body],
-        place: &mut Place<'_>,
+        frame: &mut Frame<'_>,
         parts: &mut Vec<Episode>,
     ) {
-        let (outside, around) = (place.variables.len(), place.scope);
+        let (outside, around) = (frame.variables.len(), frame.scope);
         for index in 0..count {
             self.repetitions += 1;
             if self.repetitions > MAX_EPISODES {
-                self.give_up(operator, "repetitions", Some(place.call));
+                self.give_up(operator, "repetitions", Some(frame.call));
             }
             if self.exhausted {
                 break;
             }
-            place.scope = self.scopes.open(Some(around));
+            frame.scope = self.scopes.open(Some(around));
             let number = i64::try_from(index).unwrap_or(i64::MAX);
             let kind = ValueKind::Number(Duration::from_secs(number));
-            place.variables.push(Value { kind, span: variable });
-            self.unfold(body, place, parts);
-            place.variables.truncate(outside);
-            self.scopes.close(place.scope);
+            frame.variables.push(Value { kind, span: variable });
+            self.unfold(body, frame, parts);
+            frame.variables.truncate(outside);
+            self.scopes.close(frame.scope);
         }
-        place.scope = around;
+        frame.scope = around;
     }
 
     #[inline(never)]
@@ -255,19 +255,19 @@ impl<'a> Expander<'a> {
         arguments: Vec<Value>,
         body: &'a [Body],
         operator: Span,
-        place: &mut Place<'_>,
+        frame: &mut Frame<'_>,
     ) -> Episode {
-        let mut parts = self.parts(body, place);
+        let mut parts = self.parts(body, frame);
         let episode = match parts.pop() {
             Some(only) if parts.is_empty() => only,
             last => {
                 parts.extend(last);
-                let episode = self.internal(Kind::Sequence, operator, place);
+                let episode = self.internal(Kind::Sequence, operator, frame);
                 Episode { slack: Some(false), parts, ..episode }
             }
         };
         let named = Named {
-            scope: place.scope,
+            scope: frame.scope,
             target: Target::Label(name.name.clone()),
             arguments: arguments.into_iter().map(|value| value.kind).collect(),
             episode: episode.name.clone(),
@@ -278,21 +278,21 @@ impl<'a> Expander<'a> {
     }
 
     #[inline(never)]
-    fn between(&mut self, between: &'a Between, place: &Place<'_>) {
+    fn between(&mut self, between: &'a Between, frame: &Frame<'_>) {
         let Between { from, to, bounds } = between;
         self.repetitions += 1;
         if self.repetitions > MAX_EPISODES {
-            self.give_up(from.span, "constraints", Some(place.call));
+            self.give_up(from.span, "constraints", Some(frame.call));
         }
-        let interval = self.signed_interval(bounds, place, Limits::Duration);
+        let interval = self.signed_interval(bounds, frame, Limits::Duration);
         let mut arguments =
-            |event: &EventOf| event.arguments.as_ref().map(|arguments| self.values(arguments, place));
+            |event: &EventOf| event.arguments.as_ref().map(|arguments| self.values(arguments, frame));
         let (from, to) = ((from, arguments(from)), (to, arguments(to)));
-        self.betweens.push(Pending { scope: place.scope, from, to, interval });
+        self.betweens.push(Pending { scope: frame.scope, from, to, interval });
     }
 
-    fn internal(&mut self, kind: Kind, span: Span, place: &mut Place<'_>) -> Episode {
-        let name = self.occurrences.inside(place.name, &mut place.internal);
+    fn internal(&mut self, kind: Kind, span: Span, frame: &mut Frame<'_>) -> Episode {
+        let name = self.occurrences.inside(frame.name, &mut frame.internal);
         Episode { internal: true, ..self.blank(name, kind, span) }
     }
 

@@ -25,15 +25,15 @@
 //! let compilation = compile(&[Source::new("morning.rmpl", text)], &Options::default());
 //! assert_eq!(compilation.diagnostics, []);
 //!
-//! let plan = compilation.plan.expect("no errors, so there is a plan");
-//! assert_eq!(plan.network.contingents().len(), 1);
-//! assert_eq!(plan.origins.contingents[0].text, "`drive` takes 15 to 20 s, Nature decides");
-//! assert_eq!(plan.network.id(plan.network.origin()), "main:start");
+//! let lowered = compilation.lowered.expect("no errors, so there is a network");
+//! assert_eq!(lowered.network.contingents().len(), 1);
+//! assert_eq!(lowered.origins.contingents[0].text, "`drive` takes 15 to 20 s, Nature decides");
+//! assert_eq!(lowered.network.id(lowered.network.origin()), "main:start");
 //!
-//! // A slip: the message knows what was meant, and there is no plan.
+//! // A slip: the message knows what was meant, and there is no network.
 //! let compilation = compile(&[Source::new("morning.rmpl", text.replace("(eat)", "(eta)"))], &Options::default());
 //! assert_eq!(compilation.diagnostics[0].help.as_deref(), Some("Did you mean `eat`?"));
-//! assert!(compilation.plan.is_none());
+//! assert!(compilation.lowered.is_none());
 //! ```
 //!
 //! # Words
@@ -51,7 +51,7 @@
 //!
 //! - Any text gives a result: no panic, no recursion deeper than the limits of the reader and of `expand`, time and
 //!   memory linear in the text and in the number of episodes, both bounded.
-//! - There is a plan exactly if no diagnostic is an error. Every place lies inside its source, on character boundaries.
+//! - There is a network exactly if no diagnostic is an error. Every place lies inside its source, on character boundaries.
 //! - `origins.requirements[i]` belongs to `network.requirements()[i]`, and so for the contingent links. The network is not
 //!   merged: every "at the same time" is a requirement [0, 0], so that a conflict can point at it.
 //! - Event names are unique, lower case, and depend on nothing but the source. Two runs give the same bytes.
@@ -96,7 +96,7 @@ pub use explain::{explain_conflict, total};
 pub use format::format;
 pub use front::{Front, front, front_in_order};
 pub use kirk_network::nearest;
-pub use lower::{Origin, OriginKind, Origins, Plan, events_of};
+pub use lower::{Lowered, Origin, OriginKind, Origins, events_of};
 pub use sexpr::to_sexpr;
 pub use source::{LineIndex, Source, Span};
 pub use unfold::{Unfolded, unfold};
@@ -118,7 +118,7 @@ pub struct Compilation {
     /// The program unfolded.
     pub episodes: Option<episode::Episode>,
     /// The network and where it comes from; `None` if there was an error.
-    pub plan: Option<Plan>,
+    pub lowered: Option<Lowered>,
     /// What there is to say, sorted by place.
     pub diagnostics: Vec<Diagnostic>,
 }
@@ -133,6 +133,6 @@ impl Default for Options {
 pub fn compile(sources: &[Source], options: &Options) -> Compilation {
     let Front { program: ast, model, mut problems, .. } = front(sources, options);
     let unfolded = if problems.has_errors() { None } else { unfold(&model, &mut problems) };
-    let (episodes, plan) = unfolded.map_or((None, None), |it| (Some(it.episodes), it.plan));
-    Compilation { ast, episodes, plan, diagnostics: problems.into_sorted() }
+    let (episodes, lowered) = unfolded.map_or((None, None), |it| (Some(it.episodes), it.lowered));
+    Compilation { ast, episodes, lowered, diagnostics: problems.into_sorted() }
 }

@@ -9,7 +9,7 @@ use crate::source::Span;
 
 /// What a program is compiled to.
 #[derive(Clone, Debug)]
-pub struct Plan {
+pub struct Lowered {
     /// The network, not merged: every "at the same time" is a requirement [0, 0].
     pub network: Network,
     /// Where its constraints come from.
@@ -63,7 +63,7 @@ pub enum OriginKind {
 pub(crate) const EMPTY: &str = "is empty and takes no time";
 
 /// Builds the network. `None` only if the tree is not what `expand` makes.
-pub(crate) fn lower(root: &Episode) -> Option<Plan> {
+pub(crate) fn lower(root: &Episode) -> Option<Lowered> {
     let mut lowering = Lowering {
         events: Vec::new(),
         requirements: Vec::new(),
@@ -74,7 +74,7 @@ pub(crate) fn lower(root: &Episode) -> Option<Plan> {
     lowering.constraints(root);
     let Lowering { events, requirements, contingents, origins } = lowering;
     let network = Network::new(root.name.clone(), EventId(0), events, requirements, contingents).ok()?;
-    Some(Plan { network, origins, entry: root.span })
+    Some(Lowered { network, origins, entry: root.span })
 }
 
 struct Lowering {

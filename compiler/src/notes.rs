@@ -15,12 +15,12 @@ use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::episode::{Episode, Kind};
 use crate::form::clip;
-use crate::lower::{Origins, Plan, events_of};
+use crate::lower::{Lowered, Origins, events_of};
 use crate::source::Span;
 
 /// All notes on a program that was unfolded and lowered.
-pub(crate) fn notes(plan: &Plan, root: &Episode) -> Vec<Diagnostic> {
-    let Plan { network, origins, .. } = plan;
+pub(crate) fn notes(lowered: &Lowered, root: &Episode) -> Vec<Diagnostic> {
+    let Lowered { network, origins, .. } = lowered;
     let mut notes = notes_on_bounds(root);
     notes.extend(notes_on_merging(network, origins, root));
     notes.extend(notes_on_latency(network, origins, root));

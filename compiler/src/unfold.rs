@@ -2,7 +2,7 @@
 
 use crate::episode::Episode;
 use crate::expand::expand;
-use crate::lower::{Plan, lower};
+use crate::lower::{Lowered, lower};
 use crate::notes::notes;
 use crate::problem::Problems;
 use crate::typed::Model;
@@ -13,7 +13,7 @@ pub struct Unfolded {
     /// The tree of its episodes.
     pub episodes: Episode,
     /// Its network and where that comes from; `None` if unfolding it was an error.
-    pub plan: Option<Plan>,
+    pub lowered: Option<Lowered>,
 }
 
 /// Unfolds the program the model starts from, and notes what may surprise. Expects a model without errors; `None` if there is
@@ -22,11 +22,11 @@ pub fn unfold(model: &Model, problems: &mut Problems) -> Option<Unfolded> {
     let before = problems.errors();
     let episodes = expand(model, problems)?;
     if problems.errors() > before {
-        return Some(Unfolded { episodes, plan: None });
+        return Some(Unfolded { episodes, lowered: None });
     }
-    let plan = lower(&episodes);
-    if let Some(plan) = &plan {
-        notes(plan, &episodes).into_iter().for_each(|note| problems.push(note));
+    let lowered = lower(&episodes);
+    if let Some(lowered) = &lowered {
+        problems.extend(notes(lowered, &episodes));
     }
-    Some(Unfolded { episodes, plan })
+    Some(Unfolded { episodes, lowered })
 }

@@ -9,11 +9,11 @@ use kirk_network::Verdict;
 /// The explanation of a mission that is not controllable.
 fn explanation(text: &str) -> String {
     let compiled = common::compile(text);
-    let plan =
-        compiled.plan.unwrap_or_else(|| panic!("{}", common::diagnostics(text, &compiled.diagnostics)));
-    match kirk_network::check(&plan.network).unwrap() {
+    let lowered =
+        compiled.lowered.unwrap_or_else(|| panic!("{}", common::diagnostics(text, &compiled.diagnostics)));
+    match kirk_network::check(&lowered.network).unwrap() {
         Verdict::Uncontrollable(conflict) => {
-            let problem = explain_conflict(&conflict, &plan.network, &plan.origins, plan.entry);
+            let problem = explain_conflict(&conflict, &lowered.network, &lowered.origins, lowered.entry);
             format!("{text}\n---\n{}", common::diagnostics(text, &[problem]))
         }
         Verdict::Controllable => "controllable".to_string(),

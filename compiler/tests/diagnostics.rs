@@ -16,7 +16,11 @@ fn every_bad_file_is_told_what_is_wrong_with_it() {
         let said = common::diagnostics(&text, &compiled.diagnostics);
         assert!(found.contains(&name[..5]), "{name}:\n{said}");
         let errors = compiled.diagnostics.iter().any(|d| d.severity == kirk_compiler::Severity::Error);
-        assert_eq!(compiled.plan.is_none(), errors, "{name}: there is a plan exactly if there is no error");
+        assert_eq!(
+            compiled.lowered.is_none(),
+            errors,
+            "{name}: There is a network exactly if there is no error"
+        );
         covered.extend(found);
         let shown =
             if text.len() > 4_000 { format!("({} bytes)\n", text.len()) } else { text.replace('\0', "\\0") };
@@ -43,7 +47,7 @@ fn a_package_is_chosen_or_the_choice_is_explained() {
         let options = Options { package: Some(package.to_string()), ..Options::default() };
         let compiled = common::compile_with(text, &options);
         let said = common::diagnostics(text, &compiled.diagnostics);
-        compiled.plan.map(|plan| common::network(&plan)).unwrap_or(said)
+        compiled.lowered.map(|lowered| common::network(&lowered)).unwrap_or(said)
     };
     insta::assert_snapshot!(["astronaut", "ROBOT", "#:robot", "robbot", "moon"].map(with).join("---\n"));
 }
@@ -95,8 +99,11 @@ fn the_examples_of_a_page_earn_the_code_and_do_not() {
             let said = common::diagnostics(&example, &compiled.diagnostics);
             let found = match code {
                 Code::NotControllable => {
-                    let plan = compiled.plan.expect("a plan");
-                    matches!(kirk_network::check(&plan.network), Ok(kirk_network::Verdict::Uncontrollable(_)))
+                    let lowered = compiled.lowered.expect("a network");
+                    matches!(
+                        kirk_network::check(&lowered.network),
+                        Ok(kirk_network::Verdict::Uncontrollable(_))
+                    )
                 }
                 _ => compiled.diagnostics.iter().any(|d| d.code == *code),
             };

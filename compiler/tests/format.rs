@@ -28,8 +28,9 @@ fn what_can_be_read_keeps_its_meaning_and_a_second_time_changes_nothing() {
                 compilation.diagnostics.iter().map(|d| d.code).collect::<Vec<_>>()
             };
             assert_eq!(codes(&before), codes(&after), "{name}");
-            let network =
-                |compilation: kirk_compiler::Compilation| compilation.plan.map(|plan| common::network(&plan));
+            let network = |compilation: kirk_compiler::Compilation| {
+                compilation.lowered.map(|lowered| common::network(&lowered))
+            };
             assert_eq!(network(before), network(after), "{name}");
         }
     }
@@ -89,7 +90,7 @@ proptest! {
         let shaken = shake(text, seed);
         prop_assert_eq!(&format(&shaken).unwrap(), text, "{}:\n{}", name, shaken);
         let options = common::options_in(text);
-        let network = |text: &str| compile(&[Source::new("x", text)], &options).plan.map(|plan| common::network(&plan));
+        let network = |text: &str| compile(&[Source::new("x", text)], &options).lowered.map(|lowered| common::network(&lowered));
         prop_assert_eq!(network(&shaken), network(text));
     }
 
@@ -120,10 +121,10 @@ proptest! {
             after.map(|rest| rest.chars().take_while(char::is_ascii_digit).collect()).collect()
         };
         prop_assert_eq!(notes(&text), notes(&once), "{}\n{}", text, once);
-        let plan = |text: &str| compile(&[Source::new("x", text)], &Options::default()).plan;
-        let before = plan(&text);
+        let lowered = |text: &str| compile(&[Source::new("x", text)], &Options::default()).lowered;
+        let before = lowered(&text);
         prop_assert!(before.is_some(), "{}", text);
-        prop_assert_eq!(before.map(|plan| common::network(&plan)), plan(&once).map(|plan| common::network(&plan)));
+        prop_assert_eq!(before.map(|lowered| common::network(&lowered)), lowered(&once).map(|lowered| common::network(&lowered)));
     }
 
     #[test]

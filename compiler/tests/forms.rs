@@ -13,11 +13,11 @@ fn every_form_is_compiled_to_what_it_means() {
         let compiled = common::compile_with(&text, &common::options_in(&text));
         let said = common::diagnostics(&text, &compiled.diagnostics);
         assert!(compiled.diagnostics.iter().all(|d| d.severity != Severity::Error), "{name}:\n{said}");
-        let plan = compiled.plan.expect("a plan");
+        let lowered = compiled.lowered.expect("a network");
         let result = format!(
             "{text}\n--- ast\n{}\n--- network\n{}--- diagnostics\n{said}",
             to_sexpr(&compiled.ast).unwrap(),
-            common::network(&plan),
+            common::network(&lowered),
         );
         insta::with_settings!({prepend_module_to_snapshot => false, snapshot_path => "snapshots/good", omit_expression => true}, {
             insta::assert_snapshot!(name, result);
@@ -37,11 +37,12 @@ fn the_antennas_have_every_constraint_of_the_figure_for_any_number_of_rovers() {
             .replace("+rovers+ 8)", &format!("+rovers+ {rovers})"))
             .replace("+antennas+ 2)", &format!("+antennas+ {antennas})"));
         let compiled = common::compile(&text);
-        let plan =
-            compiled.plan.unwrap_or_else(|| panic!("{}", common::diagnostics(&text, &compiled.diagnostics)));
+        let lowered = compiled
+            .lowered
+            .unwrap_or_else(|| panic!("{}", common::diagnostics(&text, &compiled.diagnostics)));
         let rounds = rovers * antennas;
-        assert_eq!(plan.network.contingents().len(), 2 * rounds);
-        let across: Vec<&str> = (plan.origins.requirements.iter())
+        assert_eq!(lowered.network.contingents().len(), 2 * rounds);
+        let across: Vec<&str> = (lowered.origins.requirements.iter())
             .filter(|origin| origin.kind == kirk_compiler::OriginKind::Between)
             .map(|origin| origin.subject.as_str())
             .collect();
@@ -65,11 +66,11 @@ fn a_conflict_shows_what_between_says() {
   (between (start out) (start back) (simple-temporal :upper-bound 24)))
 ";
     let compiled = common::compile(text);
-    let plan = compiled.plan.expect("a plan");
-    let Ok(kirk_network::Verdict::Uncontrollable(conflict)) = kirk_network::check(&plan.network) else {
+    let lowered = compiled.lowered.expect("a network");
+    let Ok(kirk_network::Verdict::Uncontrollable(conflict)) = kirk_network::check(&lowered.network) else {
         panic!("this can be executed")
     };
-    let problem = explain_conflict(&conflict, &plan.network, &plan.origins, plan.entry);
+    let problem = explain_conflict(&conflict, &lowered.network, &lowered.origins, lowered.entry);
     insta::assert_snapshot!(common::diagnostics(text, &[problem]));
 }
 
@@ -79,7 +80,7 @@ fn label_names_are_names_of_events() {
 (define-control-program main ()
   (sequence (:slack t) (label first (a)) (dotimes (i 2) (label (next i) (a))) (label A (a)) (label twice (a)))
   (dotimes (i 1) (label twice (a))))";
-    let network = common::compile(text).plan.expect("a plan").network;
+    let network = common::compile(text).lowered.expect("a network").network;
     let find = |name| network.find(name).map(|event| network.id(event).to_string());
     assert_eq!(find("first:start").as_deref(), Some("a:start"));
     assert_eq!(find("+FIRST::END+").as_deref(), Some("a:end"));
@@ -95,7 +96,7 @@ fn between_takes_the_program_started_from_and_numbered_occurrences() {
   (sequence (:slack t) (a) (a) (a))
   (between (start main) (end main) (simple-temporal :upper-bound 30))
   (between (end a#2) (start a#3) (simple-temporal :lower-bound 5)))";
-    let network = common::compile(text).plan.expect("a plan").network;
+    let network = common::compile(text).lowered.expect("a network").network;
     let bounds = |from: &str, to: &str| {
         let (from, to) = (network.find(from).expect("an event"), network.find(to).expect("an event"));
         let between = network.requirements().iter().filter(|it| (it.from, it.to) == (from, to));

@@ -29,7 +29,10 @@ fn result(text: &str) -> Compilation {
         assert!(!d.message.is_empty() && d.message.len() < 1_000, "{d:?}");
     }
     assert!(compiled.diagnostics.len() <= 201);
-    assert_eq!(compiled.plan.is_none(), compiled.diagnostics.iter().any(|d| d.severity == Severity::Error));
+    assert_eq!(
+        compiled.lowered.is_none(),
+        compiled.diagnostics.iter().any(|d| d.severity == Severity::Error)
+    );
     compiled
 }
 
@@ -117,8 +120,8 @@ fn what_may_be_nested_is_compiled_and_written_on_a_small_stack() {
             );
             let compiled = result(&text);
             let said = common::diagnostics(&text, &compiled.diagnostics);
-            let plan = compiled.plan.unwrap_or_else(|| panic!("{open}: {said}"));
-            assert_eq!(plan.network.events().len(), 2 * (episodes * depth + 2));
+            let lowered = compiled.lowered.unwrap_or_else(|| panic!("{open}: {said}"));
+            assert_eq!(lowered.network.events().len(), 2 * (episodes * depth + 2));
             assert!(to_sexpr(&compiled.ast).unwrap().len() > depth);
             assert!(to_sexpr(&compiled.episodes).unwrap().len() > episodes * depth);
         }
@@ -139,7 +142,7 @@ fn long_programs_are_compiled_in_linear_time() {
             "(define-control-program a () (declare (primitive)))\n(define-control-program main ()\n  (sequence ()\n{forms}))"
         );
         let compiled = result(&text);
-        let network = &compiled.plan.as_ref().expect("a plan").network;
+        let network = &compiled.lowered.as_ref().expect("a network").network;
         assert_eq!(network.events().len(), 2 * 50_002);
         assert!(network.find("a#50000:end").is_some());
         assert!(to_sexpr(&compiled.episodes).unwrap().contains("a#50000"));
@@ -171,7 +174,7 @@ fn names_are_unique_whatever_programs_are_called() {
 (define-control-program main.1 () (declare (primitive)))
 (define-control-program main () (sequence () (a) (a) (a#2) (main.1) (a#2) (a)))";
     let compiled = result(text);
-    let network = compiled.plan.expect("a plan").network;
+    let network = compiled.lowered.expect("a network").network;
     let names: Vec<&str> =
         network.event_ids().map(|event| network.id(event)).filter(|id| id.ends_with(":start")).collect();
     assert_eq!(
@@ -197,8 +200,9 @@ fn lisp_spellings_mean_the_same() {
 \t(DECLARE (Primitive) (Duration (SIMPLE :Lower-Bound 9d1 :UPPER-BOUND (minute 2.)) :contingent nil)))\r
 (rmpl/lang:define-control-program MAIN () (cl-user::a))";
     let events = |text| {
-        let plan = result(text).plan.expect("a plan");
-        plan.network
+        let lowered = result(text).lowered.expect("a network");
+        lowered
+            .network
             .requirements()
             .iter()
             .map(|r| (r.lower, r.upper))
@@ -226,10 +230,10 @@ proptest! {
         let text: String = words.iter().map(|word| WORDS[*word]).collect::<Vec<_>>().join(" ");
         let compiled = result(&text);
         result(&format!("(define-control-program main () {text})"));
-        if let Some(plan) = compiled.plan
-            && let Ok(kirk_network::Verdict::Uncontrollable(conflict)) = kirk_network::check(&plan.network)
+        if let Some(lowered) = compiled.lowered
+            && let Ok(kirk_network::Verdict::Uncontrollable(conflict)) = kirk_network::check(&lowered.network)
         {
-            explain_conflict(&conflict, &plan.network, &plan.origins, plan.entry);
+            explain_conflict(&conflict, &lowered.network, &lowered.origins, lowered.entry);
         }
     }
 

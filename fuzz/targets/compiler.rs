@@ -8,16 +8,16 @@ use libfuzzer_sys::fuzz_target;
 fuzz_target!(|text: &str| {
     let compiled = compile(&[Source::new("fuzz", text)], &Options::default());
     let errors = compiled.diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error);
-    assert_eq!(compiled.plan.is_none(), errors);
+    assert_eq!(compiled.lowered.is_none(), errors);
     for diagnostic in &compiled.diagnostics {
         let spans = diagnostic.labels.iter().map(|label| label.span).chain([diagnostic.span]);
         for span in spans {
             assert!(text.get(span.start as usize..span.end as usize).is_some(), "{diagnostic:?}");
         }
     }
-    if let Some(plan) = compiled.plan
-        && let Ok(Verdict::Uncontrollable(conflict)) = check(&plan.network)
+    if let Some(lowered) = compiled.lowered
+        && let Ok(Verdict::Uncontrollable(conflict)) = check(&lowered.network)
     {
-        explain_conflict(&conflict, &plan.network, &plan.origins, plan.entry);
+        explain_conflict(&conflict, &lowered.network, &lowered.origins, lowered.entry);
     }
 });

@@ -10,7 +10,7 @@ use libfuzzer_sys::fuzz_target;
 
 static MISSION: LazyLock<Network> = LazyLock::new(|| {
     let text = include_str!("../../examples/rmpl/robot.rmpl");
-    compile(&[Source::new("robot.rmpl", text)], &Options::default()).plan.expect("a plan").network
+    compile(&[Source::new("robot.rmpl", text)], &Options::default()).lowered.expect("a network").network
 });
 
 fuzz_target!(|text: &str| {

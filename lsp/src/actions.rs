@@ -73,10 +73,10 @@ fn settle(analysis: &Analysis, mission: &Mission, conflict: &Conflict) -> Vec<Fi
                 relax_enough(analysis, mission, conflict, share.part)
             }
             Part::RequirementUpper(index) | Part::RequirementLower(index) | Part::Join(index) => {
-                let origin = mission.plan.origins.requirements.get(index);
+                let origin = mission.lowered.origins.requirements.get(index);
                 origin
                     .filter(|origin| {
-                        origin.kind == OriginKind::Join && meets_nature(&mission.plan.network, index)
+                        origin.kind == OriginKind::Join && meets_nature(&mission.lowered.network, index)
                     })
                     .and_then(|origin| add_slack(analysis, origin.span))
                     .filter(|fix| {
@@ -99,7 +99,7 @@ fn relax_enough(analysis: &Analysis, mission: &Mission, conflict: &Conflict, par
     let place = written_at(mission, part)?;
     let mut by = missing_at(mission, conflict, part, place)?;
     for _ in 0..ROUNDS {
-        let fix = relax(analysis, place, &mission.plan.network, part, by)?;
+        let fix = relax(analysis, place, &mission.lowered.network, part, by)?;
         let after = tried(analysis, mission, &fix)?;
         match &after.verdict {
             Judgement::Controllable => return Some(fix),
@@ -117,7 +117,7 @@ fn written_at(mission: &Mission, part: Part) -> Option<Span> {
         Part::RequirementUpper(index) => (index, 1),
         _ => return None,
     };
-    Some(mission.plan.origins.requirements.get(index)?.places[side])
+    Some(mission.lowered.origins.requirements.get(index)?.places[side])
 }
 
 /// How much the bound at a place has to change for this conflict, which may use it several times. `None` if it does not.
@@ -142,7 +142,7 @@ fn tried(analysis: &Analysis, mission: &Mission, (_, edits): &Fix) -> Option<Mis
 
 /// True if the requirement is a number that somebody wrote for one bound alone.
 fn is_bound(mission: &Mission, requirement: usize) -> bool {
-    let origin = mission.plan.origins.requirements.get(requirement);
+    let origin = mission.lowered.origins.requirements.get(requirement);
     origin.is_some_and(|origin| {
         !matches!(origin.kind, OriginKind::Join | OriginKind::Order) && origin.places[0] != origin.places[1]
     })

@@ -97,7 +97,7 @@ pub fn lenses(view: &View) -> Vec<Lens> {
 }
 
 fn verdict(mission: &Mission) -> String {
-    let network = &mission.plan.network;
+    let network = &mission.lowered.network;
     match &mission.verdict {
         Judgement::Uncontrollable(_) => "not controllable: some bounds do not go together".to_string(),
         Judgement::TooLarge => "no verdict: the durations add up to too much".to_string(),

@@ -193,7 +193,7 @@ fn occurrences(view: &View, form: Span) -> Option<String> {
 
 /// When an occurrence happens; in detail also what it waits for and what becomes of the news of its end.
 fn times(mission: &Mission, occurrence: &Occurrence, detailed: bool) -> Option<String> {
-    let network = &mission.plan.network;
+    let network = &mission.lowered.network;
     let (start, end) = (mission.window(occurrence.start)?, mission.window(occurrence.end)?);
     let name = match occurrence.kind {
         Kind::Primitive | Kind::Program => format!("`{}`", occurrence.name),

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use kirk_compiler::episode::{Episode, Kind};
 use kirk_compiler::problem::Problems;
-use kirk_compiler::{Code, Diagnostic, Plan, Span, Unfolded, events_of, explain_conflict, unfold};
+use kirk_compiler::{Code, Diagnostic, Lowered, Span, Unfolded, events_of, explain_conflict, unfold};
 use kirk_network::windows::{Window, windows};
 use kirk_network::{Conflict, EventId, Verdict, check};
 
@@ -18,7 +18,7 @@ pub struct Mission {
     /// Where it is defined.
     pub name: Span,
     /// Its network and where that comes from.
-    pub plan: Plan,
+    pub lowered: Lowered,
     /// Everything that occurs in it, in source order; the first is the mission itself.
     pub occurrences: Vec<Occurrence>,
     /// The occurrences of every place.
@@ -60,23 +60,25 @@ pub fn judge(unjudged: Unjudged) -> (Vec<Mission>, Vec<Diagnostic>) {
     let mut problems = Problems::default();
     for root in roots {
         model.entry = Some(root);
-        let Some(Unfolded { episodes, plan: Some(plan) }) = unfold(&model, &mut problems) else { continue };
-        let (mission, verdict) = mission(&episodes, plan);
-        verdict.into_iter().for_each(|diagnostic| problems.push(diagnostic));
+        let Some(Unfolded { episodes, lowered: Some(lowered) }) = unfold(&model, &mut problems) else {
+            continue;
+        };
+        let (mission, verdict) = mission(&episodes, lowered);
+        problems.extend(verdict);
         missions.push(mission);
     }
     (missions, problems.into_sorted())
 }
 
-fn mission(root: &Episode, plan: Plan) -> (Mission, Option<Diagnostic>) {
-    let (verdict, diagnostic) = match check(&plan.network) {
+fn mission(root: &Episode, lowered: Lowered) -> (Mission, Option<Diagnostic>) {
+    let (verdict, diagnostic) = match check(&lowered.network) {
         Ok(Verdict::Controllable) => (Judgement::Controllable, None),
         Ok(Verdict::Uncontrollable(conflict)) => {
-            let diagnostic = explain_conflict(&conflict, &plan.network, &plan.origins, plan.entry);
+            let diagnostic = explain_conflict(&conflict, &lowered.network, &lowered.origins, lowered.entry);
             (Judgement::Uncontrollable(conflict), Some(diagnostic))
         }
         Err(error) => {
-            let diagnostic = Diagnostic::error(Code::NumbersTooLarge, plan.entry, error.to_string());
+            let diagnostic = Diagnostic::error(Code::NumbersTooLarge, lowered.entry, error.to_string());
             (Judgement::TooLarge, Some(diagnostic))
         }
     };
@@ -86,9 +88,9 @@ fn mission(root: &Episode, plan: Plan) -> (Mission, Option<Diagnostic>) {
         at.entry(episode.span).or_default().push(index);
         occurrences.push(Occurrence { name: episode.name.clone(), kind: episode.kind, start, end });
     }
-    let windows = windows(&plan.network);
+    let windows = windows(&lowered.network);
     let mission =
-        Mission { program: root.name.clone(), name: root.span, plan, occurrences, at, windows, verdict };
+        Mission { program: root.name.clone(), name: root.span, lowered, occurrences, at, windows, verdict };
     (mission, diagnostic)
 }
 

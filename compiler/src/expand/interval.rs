@@ -2,7 +2,7 @@
 
 use kirk_network::{Bound, Duration};
 
-use super::{Expander, Place};
+use super::{Expander, Frame};
 use crate::analyse::{negative, reversed};
 use crate::ast::{Limits, Value, ValueKind};
 use crate::code::Code;
@@ -14,17 +14,17 @@ use crate::typed::{Amount, AmountValue, Bounds, Expression, ExpressionKind};
 
 impl Expander<'_> {
     /// The numbers of an interval of durations, which are not negative.
-    pub(super) fn interval(&mut self, bounds: &Bounds, place: &Place<'_>, limits: Limits) -> Interval {
-        let mut interval = self.signed_interval(bounds, place, limits);
+    pub(super) fn interval(&mut self, bounds: &Bounds, frame: &Frame<'_>, limits: Limits) -> Interval {
+        let mut interval = self.signed_interval(bounds, frame, limits);
         let [low, high] = limits.words();
         let both =
             [(&bounds.lower, Some(interval.lower), low), (&bounds.upper, interval.upper.finite(), high)];
         for (amount, value, what) in both {
             // What was known before has been reported before.
             if let (Some(value), AmountValue::Computed(expression)) = (value, &amount.value)
-                && let Some(problem) = negative(value, argument(expression, place, amount.span), what)
+                && let Some(problem) = negative(value, argument(expression, frame, amount.span), what)
             {
-                self.problems.push(problem.label(place.call, "with the arguments of this call"));
+                self.problems.push(problem.label(frame.call, "with the arguments of this call"));
             }
         }
         interval.lower = interval.lower.max(Duration::ZERO);
@@ -35,26 +35,26 @@ impl Expander<'_> {
     }
 
     /// The numbers of an interval.
-    pub(super) fn signed_interval(&mut self, bounds: &Bounds, place: &Place<'_>, limits: Limits) -> Interval {
+    pub(super) fn signed_interval(&mut self, bounds: &Bounds, frame: &Frame<'_>, limits: Limits) -> Interval {
         let [low, high] = limits.words();
-        let lower = match self.bound(&bounds.lower, place, low) {
+        let lower = match self.bound(&bounds.lower, frame, low) {
             Some(Bound::Finite(lower)) => lower,
             Some(Bound::Infinite) => {
                 self.problems.push(
                     Diagnostic::error(Code::InfiniteLower, bounds.lower.span, format!("{low} is infinite"))
                         .primary("this would never be over")
-                        .label(place.call, "with the arguments of this call")
+                        .label(frame.call, "with the arguments of this call")
                         .help("Only an upper bound may be `:infinity`."),
                 );
                 Duration::ZERO
             }
             None => Duration::ZERO,
         };
-        let mut upper = self.bound(&bounds.upper, place, high).unwrap_or(Bound::Finite(lower));
+        let mut upper = self.bound(&bounds.upper, frame, high).unwrap_or(Bound::Finite(lower));
         if let Bound::Finite(most) = upper
             && let Some(problem) = reversed(lower, most, bounds, limits)
         {
-            self.problems.push(problem.label(place.call, "with the arguments of this call"));
+            self.problems.push(problem.label(frame.call, "with the arguments of this call"));
             upper = Bound::Finite(lower);
         }
         let (lower_span, upper_span) = (bounds.lower.span, bounds.upper.span);
@@ -62,53 +62,53 @@ impl Expander<'_> {
     }
 
     /// The values of arguments.
-    pub(super) fn values(&mut self, expressions: &[Expression], place: &Place<'_>) -> Vec<Value> {
-        expressions.iter().map(|expression| self.value(expression, place)).collect()
+    pub(super) fn values(&mut self, expressions: &[Expression], frame: &Frame<'_>) -> Vec<Value> {
+        expressions.iter().map(|expression| self.value(expression, frame)).collect()
     }
 
-    fn value(&mut self, expression: &Expression, place: &Place<'_>) -> Value {
-        evaluate::evaluate(expression, &place.variables).unwrap_or_else(|problem| {
-            self.report(problem, place);
+    fn value(&mut self, expression: &Expression, frame: &Frame<'_>) -> Value {
+        evaluate::evaluate(expression, &frame.variables).unwrap_or_else(|problem| {
+            self.report(problem, frame);
             Value { kind: ValueKind::Nil, span: expression.span }
         })
     }
 
-    fn bound(&mut self, amount: &Amount, place: &Place<'_>, what: &str) -> Option<Bound> {
+    fn bound(&mut self, amount: &Amount, frame: &Frame<'_>, what: &str) -> Option<Bound> {
         match &amount.value {
             AmountValue::Known(bound) => Some(*bound),
             AmountValue::Error => None,
             AmountValue::Computed(expression) => {
-                let bound = evaluate::bound(expression, &place.variables, what);
-                bound.map_err(|problem| self.report(problem, place)).ok()
+                let bound = evaluate::bound(expression, &frame.variables, what);
+                bound.map_err(|problem| self.report(problem, frame)).ok()
             }
         }
     }
 
     /// How many times, as far as that makes sense.
-    pub(super) fn count(&mut self, expression: &Expression, place: &Place<'_>) -> u64 {
-        evaluate::count(expression, &place.variables).unwrap_or_else(|problem| {
-            self.report(problem, place);
+    pub(super) fn count(&mut self, expression: &Expression, frame: &Frame<'_>) -> u64 {
+        evaluate::count(expression, &frame.variables).unwrap_or_else(|problem| {
+            self.report(problem, frame);
             0
         })
     }
 
-    fn report(&mut self, problem: evaluate::Wrong, place: &Place<'_>) {
+    fn report(&mut self, problem: evaluate::Wrong, frame: &Frame<'_>) {
         if let Some(problem) = problem {
             let here =
-                place.call == problem.span || problem.labels.iter().any(|label| label.span == place.call);
+                frame.call == problem.span || problem.labels.iter().any(|label| label.span == frame.call);
             self.problems.push(match here {
                 true => *problem,
-                false => problem.label(place.call, "with the arguments of this call"),
+                false => problem.label(frame.call, "with the arguments of this call"),
             });
         }
     }
 }
 
 /// Where the value of a variable was given; of anything else, where it stands.
-fn argument(expression: &Expression, place: &Place<'_>, otherwise: Span) -> Span {
+fn argument(expression: &Expression, frame: &Frame<'_>, otherwise: Span) -> Span {
     match &expression.kind {
         ExpressionKind::Variable(index, _) => {
-            place.variables.get(*index).map_or(otherwise, |value| value.span)
+            frame.variables.get(*index).map_or(otherwise, |value| value.span)
         }
         _ => otherwise,
     }

@@ -111,12 +111,12 @@ impl Scopes {
 }
 
 /// A scope, and the position of what occurs in it.
-type Place = (usize, usize);
+type Entry = (usize, usize);
 
 /// Everything that occurs, by name, sorted by scope; with and without the arguments.
 pub(super) struct Index<'a> {
     scopes: &'a Scopes,
-    places: BTreeMap<(&'a Target, Option<String>), Vec<Place>>,
+    places: BTreeMap<(&'a Target, Option<String>), Vec<Entry>>,
     /// The occurrences of programs by the names of their episodes, which are all different.
     episodes: HashMap<&'a str, usize>,
 }
@@ -182,7 +182,7 @@ impl Index<'_> {
         &self,
         wanted: &Wanted<'_>,
         arguments: Option<&[ValueKind]>,
-        several: &[Place],
+        several: &[Entry],
     ) -> Diagnostic {
         let name = written(wanted.name, arguments);
         let found: Vec<&Named> = several.iter().map(|(_, position)| &self.scopes.named[*position]).collect();

@@ -8,7 +8,7 @@
 )]
 
 use kirk_compiler::{
-    Compilation, Diagnostic, LineIndex, Options, Origin, Plan, Severity, Source, Span, Suggestion,
+    Compilation, Diagnostic, LineIndex, Lowered, Options, Origin, Severity, Source, Span, Suggestion,
 };
 use kirk_network::{Bound, Network};
 
@@ -90,8 +90,8 @@ pub fn applied(text: &str, suggestion: &Suggestion) -> String {
 }
 
 /// One line for each constraint, with the words it comes from.
-pub fn network(plan: &Plan) -> String {
-    let network = &plan.network;
+pub fn network(lowered: &Lowered) -> String {
+    let network = &lowered.network;
     let mut out = format!("network {}, origin {}\n", network.name(), network.id(network.origin()));
     for event in network.events() {
         let names: Vec<String> = event
@@ -101,11 +101,11 @@ pub fn network(plan: &Plan) -> String {
             .collect();
         out.push_str(&format!("  {}\n", names.join(" ")));
     }
-    for (r, origin) in network.requirements().iter().zip(&plan.origins.requirements) {
+    for (r, origin) in network.requirements().iter().zip(&lowered.origins.requirements) {
         let interval = format!("[{}, {}]", bound(r.lower, "-inf"), bound(r.upper, "inf"));
         out.push_str(&line(network, r.from, r.to, "->", &interval, origin));
     }
-    for (link, origin) in network.contingents().iter().zip(&plan.origins.contingents) {
+    for (link, origin) in network.contingents().iter().zip(&lowered.origins.contingents) {
         let mut interval = format!("[{}, {}]", link.lower, link.upper);
         if link.delay != kirk_network::Delay::NONE {
             interval.push_str(&format!(" delay [{}, {}]", link.delay.min, bound(link.delay.max, "inf")));

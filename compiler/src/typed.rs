@@ -222,6 +222,15 @@ impl Program {
 }
 
 impl Body {
+    /// True if it becomes an episode of its own, and not only what is in it. A label does if it names several forms.
+    pub fn is_episode(&self) -> bool {
+        match self {
+            Body::Call { .. } | Body::Group { .. } | Body::Within { .. } | Body::Delay { .. } => true,
+            Body::Let { .. } | Body::Repeat { .. } | Body::Between(_) => false,
+            Body::Label { body, .. } => body.len() != 1,
+        }
+    }
+
     /// The forms inside it.
     pub fn parts(&self) -> &[Body] {
         match self {

@@ -82,10 +82,7 @@ fn size(work: &Work, sizes: &[Option<Size>]) -> Size {
     while let Some((part, depth, times)) = open.pop() {
         let own = match part {
             Body::Call { program, .. } => sizes[*program].unwrap_or(Size { episodes: 1, depth: 1 }),
-            Body::Group { .. } | Body::Within { .. } | Body::Label { .. } | Body::Delay { .. } => {
-                Size { episodes: 1, depth: 1 }
-            }
-            Body::Let { .. } | Body::Repeat { .. } | Body::Between(_) => Size { episodes: 0, depth: 1 },
+            _ => Size { episodes: u64::from(part.is_episode()), depth: 1 },
         };
         // A number that depends on variables counts as one; what comes of it is counted when it is unfolded.
         let again = match part {
@@ -94,10 +91,7 @@ fn size(work: &Work, sizes: &[Option<Size>]) -> Size {
         };
         let inside = part.parts().iter().map(|inner| (inner, depth + 1, times.saturating_mul(again)));
         open.extend(inside);
-        // A label is an episode of its own only if it names several forms.
-        let own_episodes =
-            if matches!(part, Body::Label { .. }) && part.parts().len() == 1 { 0 } else { own.episodes };
-        total.episodes = total.episodes.saturating_add(own_episodes.saturating_mul(times));
+        total.episodes = total.episodes.saturating_add(own.episodes.saturating_mul(times));
         total.depth = total.depth.max((depth - 1).saturating_add(own.depth));
     }
     total

@@ -13,6 +13,9 @@ use serde_json::value::RawValue;
 use super::ReadProblem;
 use super::fields::{Fields, clipped};
 
+type Words = &'static [&'static str];
+type Read<'de, V> = Result<<V as Visitor<'de>>::Value, Wrong>;
+
 /// A value in a text.
 #[derive(Clone, Copy)]
 pub(super) struct Element<'de> {
@@ -59,14 +62,14 @@ impl<'de> Element<'de> {
     }
 
     /// Reads it if it begins as what is expected does.
-    fn visit_if<V: Visitor<'de>>(self, begin: char, expected: &str, visitor: V) -> Result<V::Value, Wrong> {
+    fn visit_if<V: Visitor<'de>>(self, begin: char, expected: &str, visitor: V) -> Read<'de, V> {
         if !self.raw.get().starts_with(begin) {
             return Err(Wrong::Expected(expected.to_string()).at(self));
         }
         self.visit(visitor).map_err(|wrong| wrong.at(self))
     }
 
-    fn visit<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
+    fn visit<V: Visitor<'de>>(self, visitor: V) -> Read<'de, V> {
         match self.raw.get().as_bytes().first() {
             Some(b'{') => {
                 let Fields(fields) = self.read()?;
@@ -101,23 +104,23 @@ impl<'de> Element<'de> {
 impl<'de> Deserializer<'de> for Element<'de> {
     type Error = Wrong;
 
-    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Read<'de, V> {
         self.visit(visitor).map_err(|wrong| wrong.at(self))
     }
 
-    fn deserialize_str<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
+    fn deserialize_str<V: Visitor<'de>>(self, visitor: V) -> Read<'de, V> {
         self.visit_if('"', "a text in quotation marks", visitor)
     }
 
-    fn deserialize_string<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
+    fn deserialize_string<V: Visitor<'de>>(self, visitor: V) -> Read<'de, V> {
         self.deserialize_str(visitor)
     }
 
-    fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
+    fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Read<'de, V> {
         self.visit_if('[', "a list", visitor)
     }
 
-    fn deserialize_tuple<V: Visitor<'de>>(self, length: usize, visitor: V) -> Result<V::Value, Wrong> {
+    fn deserialize_tuple<V: Visitor<'de>>(self, length: usize, visitor: V) -> Read<'de, V> {
         let expected = format!("a list of {length}");
         match self.read::<Vec<&RawValue>>() {
             Ok(list) if list.len() != length => {
@@ -127,40 +130,26 @@ impl<'de> Deserializer<'de> for Element<'de> {
         }
     }
 
-    fn deserialize_struct<V: Visitor<'de>>(
-        self,
-        _: &'static str,
-        _: &'static [&'static str],
-        visitor: V,
-    ) -> Result<V::Value, Wrong> {
+    fn deserialize_struct<V: Visitor<'de>>(self, _: &'static str, _: Words, visitor: V) -> Read<'de, V> {
         self.visit_if('{', "an object", visitor)
     }
 
-    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Read<'de, V> {
         if self.raw.get() == "null" { visitor.visit_none() } else { visitor.visit_some(self) }
     }
 
-    fn deserialize_enum<V: Visitor<'de>>(
-        self,
-        _: &'static str,
-        _: &'static [&'static str],
-        visitor: V,
-    ) -> Result<V::Value, Wrong> {
+    fn deserialize_enum<V: Visitor<'de>>(self, _: &'static str, _: Words, visitor: V) -> Read<'de, V> {
         let word = String::deserialize(self)?;
         visitor.visit_enum(word.into_deserializer()).map_err(|wrong: Wrong| wrong.at(self))
     }
 
     /// However deep it is.
-    fn deserialize_ignored_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
+    fn deserialize_ignored_any<V: Visitor<'de>>(self, visitor: V) -> Read<'de, V> {
         visitor.visit_unit()
     }
 
     /// A [`RawValue`], which only serde_json can make.
-    fn deserialize_newtype_struct<V: Visitor<'de>>(
-        self,
-        name: &'static str,
-        visitor: V,
-    ) -> Result<V::Value, Wrong> {
+    fn deserialize_newtype_struct<V: Visitor<'de>>(self, name: &'static str, visitor: V) -> Read<'de, V> {
         let mut deserializer = serde_json::Deserializer::from_str(self.raw.get());
         deserializer
             .deserialize_newtype_struct(name, visitor)
@@ -231,11 +220,11 @@ impl Error for Wrong {
         Wrong::Expected(expected.to_string())
     }
 
-    fn unknown_variant(word: &str, expected: &'static [&'static str]) -> Wrong {
+    fn unknown_variant(word: &str, expected: Words) -> Wrong {
         Wrong::Other(format!("`{word}` is not known here; expected {}", one_of(expected)))
     }
 
-    fn unknown_field(field: &str, expected: &'static [&'static str]) -> Wrong {
+    fn unknown_field(field: &str, expected: Words) -> Wrong {
         Wrong::Other(format!("there is no field `{field}`; expected {}", one_of(expected)))
     }
 

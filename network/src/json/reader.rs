@@ -32,17 +32,12 @@ pub(super) fn read(text: &str) -> Result<(Network, SourceMap), Vec<ReadProblem>>
     }
 }
 
-/// The fields of the file, not yet looked into.
-#[derive(Default)]
-struct FileText<'a> {
-    format: Option<&'a RawValue>,
-    name: Option<&'a RawValue>,
-    time_unit: Option<&'a RawValue>,
-    origin: Option<&'a RawValue>,
-    events: Option<&'a RawValue>,
-    requirements: Option<&'a RawValue>,
-    contingents: Option<&'a RawValue>,
-}
+/// The fields of a network, and those that it has to have.
+const FIELDS: [&str; 7] = ["format", "name", "time_unit", "origin", "events", "requirements", "contingents"];
+const REQUIRED: [&str; 3] = ["format", "origin", "events"];
+
+/// The fields that are there, not yet looked into.
+type File<'a> = BTreeMap<String, &'a RawValue>;
 
 struct EventText {
     id: String,
@@ -132,44 +127,27 @@ fn bound(duration: Option<Duration>) -> Bound {
 }
 
 impl<'a> Reader<'a> {
-    fn file(&mut self, fields: Vec<(String, &'a RawValue)>) -> FileText<'a> {
-        let mut file = FileText::default();
+    fn file(&mut self, fields: Vec<(String, &'a RawValue)>) -> File<'a> {
+        let mut file = File::new();
         for (name, raw) in fields {
-            let slot = match name.as_str() {
-                "format" => &mut file.format,
-                "name" => &mut file.name,
-                "time_unit" => &mut file.time_unit,
-                "origin" => &mut file.origin,
-                "events" => &mut file.events,
-                "requirements" => &mut file.requirements,
-                "contingents" => &mut file.contingents,
-                _ => {
-                    let known =
-                        "`format`, `name`, `time_unit`, `origin`, `events`, `requirements` and `contingents`";
-                    self.problem(raw, format!("a network has no field `{name}`; it has {known}"));
-                    continue;
-                }
-            };
-            if slot.replace(raw).is_some() {
+            if !FIELDS.contains(&name.as_str()) {
+                let [others @ .., last] = FIELDS;
+                let known = format!("`{}` and `{last}`", others.join("`, `"));
+                self.problem(raw, format!("a network has no field `{name}`; it has {known}"));
+            } else if file.insert(name.clone(), raw).is_some() {
                 self.problem(raw, format!("the field `{name}` is there twice"));
             }
         }
-        for (name, there) in [
-            ("format", file.format.is_some()),
-            ("origin", file.origin.is_some()),
-            ("events", file.events.is_some()),
-        ] {
-            if !there {
-                self.problems
-                    .push(ReadProblem { offset: 0, message: format!("the field `{name}` is missing") });
-            }
+        for name in REQUIRED.iter().filter(|name| !file.contains_key(**name)) {
+            let message = format!("the field `{name}` is missing");
+            self.problems.push(ReadProblem { offset: 0, message });
         }
         file
     }
 
-    /// The elements of a field that is a list; none if the field is not there.
-    fn list(&mut self, name: &str, field: Option<&'a RawValue>) -> Vec<&'a RawValue> {
-        field.and_then(|raw| self.element(name, raw)).unwrap_or_default()
+    /// What a field says, or its default if it is not there.
+    fn field<T: Deserialize<'a> + Default>(&mut self, file: &File<'a>, name: &str) -> T {
+        file.get(name).and_then(|raw| self.element(name, raw)).unwrap_or_default()
     }
 
     /// An element that has to be an object with these fields.
@@ -218,18 +196,20 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn network(&mut self, file: &FileText<'a>) -> Option<(Network, SourceMap)> {
-        self.expect("format", file.format, FORMAT, |format| {
+    fn network(&mut self, file: &File<'a>) -> Option<(Network, SourceMap)> {
+        self.expect(file, "format", FORMAT, |format| {
             format!("the format is `{format}`; this kirk reads `{FORMAT}`")
         });
-        self.expect("time_unit", file.time_unit, "s", |unit| {
+        self.expect(file, "time_unit", "s", |unit| {
             format!("the time unit is `{unit}`; kirk networks are in seconds, `s`")
         });
-        let name: String = file.name.and_then(|raw| self.element("name", raw)).unwrap_or_default();
-        let events = self.list("events", file.events);
-        let requirements = self.list("requirements", file.requirements);
-        let contingents = self.list("contingents", file.contingents);
-        let elements = Elements { origin: file.origin, requirements, contingents };
+        let name: String = self.field(file, "name");
+        let events: Vec<&RawValue> = self.field(file, "events");
+        let elements = Elements {
+            origin: file.get("origin").copied(),
+            requirements: self.field(file, "requirements"),
+            contingents: self.field(file, "contingents"),
+        };
         let events = self.events(&events);
         let origin = self.origin(&elements);
         let requirements = self.requirements(&elements);
@@ -249,14 +229,8 @@ impl<'a> Reader<'a> {
     }
 
     /// Refuses a field that is there and says anything but what it has to.
-    fn expect(
-        &mut self,
-        name: &str,
-        field: Option<&'a RawValue>,
-        wanted: &str,
-        message: impl Fn(&str) -> String,
-    ) {
-        if let Some(raw) = field
+    fn expect(&mut self, file: &File<'a>, name: &str, wanted: &str, message: impl Fn(&str) -> String) {
+        if let Some(raw) = file.get(name)
             && let Some(found) = self.element::<String>(name, raw)
             && found != wanted
         {

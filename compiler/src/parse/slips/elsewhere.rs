@@ -3,6 +3,7 @@
 use super::head;
 use crate::diagnostic::{Diagnostic, Edit};
 use crate::form::Form;
+use crate::words::usage;
 
 /// What there is in the place of a word of another language.
 #[derive(Clone, Copy)]
@@ -109,13 +110,9 @@ pub(super) fn instead_of_definition(word: &str) -> Option<Instead> {
                 _ => Cure::Unknown,
             },
         ),
-        "defvar" | "define-constant" | "defconst" => {
-            ("A named number is `(defparameter *name* 15)`.", Cure::Write("defparameter"))
-        }
-        "setq" | "setf" | "let" | "let*" => ("A named number is `(defparameter *name* 15)`.", Cure::Unknown),
-        "defstruct" | "deftype" => {
-            ("A class is `(defclass name (super...) ((slot :option value...)...))`.", Cure::Unknown)
-        }
+        "defvar" | "define-constant" | "defconst" => (usage("defparameter"), Cure::Write("defparameter")),
+        "setq" | "setf" | "let" | "let*" => (usage("defparameter"), Cure::Unknown),
+        "defstruct" | "deftype" => (usage("defclass"), Cure::Unknown),
         "use-package" | "import" | "export" | "shadow" => (
             "What a package uses is said where it is defined: `(defpackage #:name (:use #:other))`.",
             Cure::Unknown,

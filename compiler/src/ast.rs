@@ -458,6 +458,14 @@ pub struct SlotOf {
     pub object: Value,
 }
 
+impl ControlProgram {
+    /// How it is called.
+    pub fn shape(&self) -> String {
+        let parameters = self.parameters.iter().map(|parameter| format!(" {}", parameter.name));
+        format!("({}{})", self.name.name, parameters.collect::<String>())
+    }
+}
+
 impl Argument {
     /// Where it is written.
     pub fn span(&self) -> Span {

@@ -118,7 +118,7 @@ impl Offer<'_> {
                 self.words(Position::Declare);
                 self.add(Part::Form(Position::Body));
             }
-            Part::Number if self.cursor.first => self.words(Position::Number),
+            Part::Number | Part::Bound if self.cursor.first => self.words(Position::Number),
             Part::Number => {
                 self.values();
                 self.words(Position::Number);
@@ -169,12 +169,8 @@ impl Offer<'_> {
             for (index, parameter) in definition.parameters.iter().enumerate() {
                 snippet.push_str(&format!(" ${{{}:{}}}", index + 1, escaped(&parameter.name)));
             }
-            let words: Vec<&str> = std::iter::once(name)
-                .chain(definition.parameters.iter().map(|parameter| &parameter.name))
-                .map(String::as_str)
-                .collect();
             let about = program(analysis.source_of(definition.span), definition);
-            self.form(name, CompletionKind::Program, &format!("({})", words.join(" ")), &about, &snippet);
+            self.form(name, CompletionKind::Program, &definition.shape(), &about, &snippet);
         }
     }
 

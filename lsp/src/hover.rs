@@ -89,9 +89,7 @@ fn what(analysis: &Analysis, symbol: &Symbol) -> String {
 
 /// How a program is called, how long it takes, and what it is for.
 pub(crate) fn program(source: &Source, program: &ControlProgram) -> String {
-    let words: Vec<&str> =
-        std::iter::once(&program.name).chain(&program.parameters).map(|ident| ident.name.as_str()).collect();
-    let mut text = format!("```lisp\n({})\n```", words.join(" "));
+    let mut text = format!("```lisp\n{}\n```", program.shape());
     let takes = match (&program.duration, program.primitive) {
         (Some(duration), _) => takes(source, duration),
         (None, true) => "takes any time, as we choose".to_string(),

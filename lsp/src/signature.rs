@@ -1,6 +1,5 @@
 //! How the form around the cursor is written, and which part of it the cursor is in.
 
-use kirk_compiler::ast::ControlProgram;
 use kirk_compiler::words::word;
 
 use crate::analysis::Analysis;
@@ -32,7 +31,7 @@ pub fn signature(analysis: &Analysis, offset: u32) -> Option<Signature> {
         let part = open.before.saturating_sub(1 + usize::from(level > 0));
         let called = analysis.program.programs.iter().find(|program| program.name.name == head);
         let (label, about) = match (called, word(&head)) {
-            (Some(called), _) => (call(called), program(analysis.source_of(called.span), called)),
+            (Some(called), _) => (called.shape(), program(analysis.source_of(called.span), called)),
             (None, Some(word)) => (word.shape(), word.about.to_string()),
             (None, None) => continue,
         };
@@ -47,12 +46,6 @@ pub fn signature(analysis: &Analysis, offset: u32) -> Option<Signature> {
         return Some(Signature { label, parameters, active, about });
     }
     None
-}
-
-fn call(program: &ControlProgram) -> String {
-    let words: Vec<&str> =
-        std::iter::once(&program.name).chain(&program.parameters).map(|ident| ident.name.as_str()).collect();
-    format!("({})", words.join(" "))
 }
 
 /// The parts of a shape after its head: what blanks separate outside of inner parentheses.

@@ -118,7 +118,7 @@ impl Names {
         }
     }
 
-    /// True if the package has something of this name, or sees it.
+    /// True if the package has something of this name, or sees it, which is named here then.
     fn has(&self, package: &str, name: &Ident, uses: &mut Uses) -> bool {
         let program = self.program(name, package).map(SymbolKind::Program);
         let number = || self.number(name, package).map(SymbolKind::NamedNumber);

@@ -112,8 +112,8 @@ pub enum Ended {
 /// The second differs from the first in that it does without one of its knobs, and so on: a repair that only adds a knob to
 /// those of a cheaper one is not looked for. A change of one knob that is enough alone is always looked for.
 ///
-/// A bound in two knobs is changed by the first of them, in order, where several change. The order of `allowed` is of no
-/// importance.
+/// Of knobs with a bound in common, the first, in their own order, is used where several change; the others alone. The order
+/// of `allowed` is of no importance.
 ///
 /// ```
 /// use kirk_network::repair::{Allowed, Options, ours, repairs};
@@ -160,13 +160,17 @@ pub fn repairs(
             None => not_alone.push(knob),
         }
     }
-    not_alone.sort();
     let mut plans = cheapest(&mut search, singles.into_values().collect(), options.limit);
     if plans.is_empty() && search.gave_up() {
         plans.extend(search.any());
     }
     plans.truncate(options.limit);
-    let repairs = plans.iter().map(|plan| search.repair(plan)).collect();
+    let repairs: Vec<Repair> = plans.iter().map(|plan| search.repair(plan)).collect();
+    // Where the reduction is too careful at the far end of a knob, there may yet be a value that is enough.
+    let is_enough =
+        |knob: &Knob| repairs.iter().any(|it| it.changes.len() == 1 && it.changes[0].knob == *knob);
+    not_alone.retain(|knob| !is_enough(knob));
+    not_alone.sort();
     let ended = if search.gave_up() { Ended::OutOfRounds } else { Ended::Complete };
     Ok(Some(Repairs { repairs, not_alone, ended }))
 }

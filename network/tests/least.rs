@@ -207,6 +207,17 @@ fn knobs_of_several_bounds_move_together() {
 }
 
 #[test]
+fn a_knob_whose_other_bound_is_farther_out_has_a_least_change_too() {
+    let text = r#"{"format": "kirk-network/1", "origin": "z", "events": ["z", "a"],
+        "requirements": [{"from": "a", "to": "z", "lower": 0, "upper": 0},
+                         {"from": "a", "to": "z", "lower": -3, "upper": -1}]}"#;
+    let network = json::read(text).unwrap();
+    let both = Knob::together(vec![Part::RequirementLower(0), Part::RequirementLower(1)]).unwrap();
+    let change = least_changes(&network, &[both]).unwrap().remove(0).unwrap();
+    assert_eq!(change.to, Duration::from_secs(-1).into());
+}
+
+#[test]
 fn news_that_may_never_come_is_named_with_the_delay_it_would_need() {
     let text = r#"{"format": "kirk-network/1", "origin": "z", "events": ["z", "a", "c", "x"],
         "requirements": [{"from": "c", "to": "x", "lower": 0, "upper": 5}],

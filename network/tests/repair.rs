@@ -49,22 +49,22 @@ fn turned(network: &Network, knob: &Knob, micros: i64) -> Change {
     Change { knob: knob.clone(), from, to: to.into() }
 }
 
-/// By how many seconds a bound can be made easier, and never more than `most`.
+/// By how many seconds all bounds of a knob can be made easier, and never more than `most`.
 fn room(network: &Network, knob: &Knob, most: i64) -> i64 {
     let seconds = |duration: Duration| duration.as_micros() / SECOND;
-    let room = match knob.parts()[0] {
+    let room = |part: &Part| match *part {
         Part::LinkLower(index) | Part::LinkUpper(index) => {
             let link = network.contingents()[index];
             seconds(link.upper) - seconds(link.lower)
         }
         Part::DelayMin(index) => {
             let delay = network.contingents()[index].delay;
-            seconds(delay.max.finite().unwrap_or(delay.min)) - seconds(delay.min)
+            delay.max.finite().map_or(most, |max| seconds(max) - seconds(delay.min))
         }
         Part::DelayMax(index) => network.contingents()[index].delay.max.finite().map_or(0, seconds),
         _ => most,
     };
-    room.min(most)
+    knob.parts().iter().map(room).min().unwrap().min(most)
 }
 
 /// Some knobs of a network with finite values that are whole seconds, at random costs.
@@ -78,6 +78,15 @@ fn some_knobs(random: &mut Random, network: &Network, most: usize) -> Vec<Allowe
     {
         let own = could_settle(network, &conflict);
         knobs.sort_by_key(|knob| !own.contains(&knob.parts()[0]));
+    }
+    // What is written once moves together.
+    if random.percent(40)
+        && let Some(alike) = (1..knobs.len()).find_map(|at| {
+            Knob::together([knobs[0].parts(), knobs[at].parts()].concat()).map(|knob| (at, knob))
+        })
+    {
+        knobs[0] = alike.1;
+        knobs.remove(alike.0);
     }
     knobs.truncate(random.within(2..=most as i64) as usize);
     random.shuffle(&mut knobs);
@@ -490,6 +499,29 @@ fn where_no_knob_has_a_part_in_the_conflict_there_is_nothing_to_propose() {
     let knob = Knob::of(Part::RequirementUpper(1)).unwrap();
     let found = repairs(&network, &second_units(&network, vec![knob.clone()]), &WELL).unwrap().unwrap();
     assert_eq!(found, Repairs { repairs: vec![], not_alone: vec![knob], ended: Ended::Complete });
+}
+
+#[test]
+fn of_knobs_with_a_bound_in_common_one_at_a_time_is_turned() {
+    let text = r#"{"format": "kirk-network/1", "origin": "z", "events": ["z", "a", "b", "c"],
+        "requirements": [{"from": "z", "to": "a", "lower": 30}, {"from": "a", "to": "b", "lower": 30},
+                         {"from": "z", "to": "b", "upper": 40}, {"from": "z", "to": "a", "upper": 25}]}"#;
+    let network = json::read(text).unwrap();
+    let knob = |parts: &[usize]| {
+        let parts = parts.iter().map(|index| Part::RequirementLower(*index)).collect();
+        Allowed { knob: Knob::together(parts).unwrap(), weight: 1, unit: Duration::from_micros(SECOND) }
+    };
+    let allowed = [knob(&[1]), knob(&[0, 1]), knob(&[0])];
+    let found = repairs(&network, &allowed, &WELL).unwrap().unwrap();
+    let second = knob(&[1]).knob;
+    assert_eq!(found.not_alone, [second]);
+    assert_eq!(
+        found.repairs.iter().map(shown).collect::<Vec<_>>(),
+        [
+            "[RequirementLower(0), RequirementLower(1)] 30 -> 20 for 10000000",
+            "[RequirementLower(0)] 30 -> 10 for 20000000",
+        ]
+    );
 }
 
 #[test]

@@ -58,12 +58,12 @@ pub(super) struct Levers {
 }
 
 impl Levers {
-    /// Of a network and the bounds of each knob; a bound of two knobs is the first one's.
+    /// Of a network and the bounds of each knob. A knob with a bound of one before has no part in clauses.
     pub(super) fn new<'a>(network: &Network, knobs: impl Iterator<Item = &'a [Part]>) -> Levers {
         let mut by_part = BTreeMap::new();
         for (number, parts) in knobs.enumerate() {
-            for &part in parts {
-                by_part.entry(part).or_insert(number);
+            if parts.iter().all(|part| !by_part.contains_key(part)) {
+                by_part.extend(parts.iter().map(|part| (*part, number)));
             }
         }
         let links = by_part.keys().filter_map(|part| link_of(*part)).collect();

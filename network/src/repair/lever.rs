@@ -29,7 +29,7 @@ impl Lever {
             Part::DelayMax(_) if !is_finite(dial.here) => -longest_useful(network, &allowed.knob),
             _ => dial.here,
         };
-        let room = dial.easiest_followed.min(Duration::MAX.as_micros()).checked_sub(start)?;
+        let room = dial.easiest_followed.min(dial.finite.1).checked_sub(start)?;
         let (knob, weight, unit) =
             (allowed.knob.clone(), allowed.weight.max(1), allowed.unit.as_micros().max(1));
         (is_finite(start) && room > 0).then_some(Lever { knob, weight, dial, start, room, unit })

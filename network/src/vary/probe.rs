@@ -35,6 +35,8 @@ pub(crate) struct Dial {
     pub(crate) easiest: i64,
     /// The easiest position if a shortest delay follows the longest.
     pub(crate) easiest_followed: i64,
+    /// The hardest and the easiest position at which all bounds are numbers that a model may contain.
+    pub(crate) finite: (i64, i64),
     /// True if the hardest position is only the largest number a model may contain.
     pub(crate) hardest_is_any: bool,
     /// The same for the easiest.
@@ -74,12 +76,14 @@ impl<'a> Probe<'a> {
         let here = axis::position(first, knob.value(network));
         let (mut hardest, mut easiest, mut followed) = (-INFINITE, INFINITE, INFINITE);
         let (mut hardest_is_any, mut easiest_is_any) = (true, true);
+        let mut finite = (-FARTHEST, FARTHEST);
         let mut merged = Some(Vec::new());
         for &part in &knob.parts {
             let own = axis::position(part, axis::value(network, part));
             // A bound that is infinite is put where the knob is.
             let offset = if is_finite(own) && is_finite(here) { own - here } else { 0 };
             let back = |position: i64| if is_finite(position) { position - offset } else { position };
+            finite = (finite.0.max(-FARTHEST - offset), finite.1.min(FARTHEST - offset));
             let (hard, easy) = axis::range(network, part);
             hardest_is_any &= hard <= -FARTHEST;
             easiest_is_any &= easy >= FARTHEST;
@@ -96,7 +100,17 @@ impl<'a> Probe<'a> {
         let (easiest, easiest_followed) = (easiest.min(limit), followed.min(limit));
         easiest_is_any &= limit == INFINITE;
         let knob = knob.clone();
-        Dial { knob, merged, here, hardest, easiest, easiest_followed, hardest_is_any, easiest_is_any }
+        Dial {
+            knob,
+            merged,
+            here,
+            hardest,
+            easiest,
+            easiest_followed,
+            finite,
+            hardest_is_any,
+            easiest_is_any,
+        }
     }
 
     /// One more requirement, not yet bounded, from the origin to an event, for questions about the event's time.
@@ -123,6 +137,7 @@ impl<'a> Probe<'a> {
             hardest: if hardest_is_any { -FARTHEST } else { 0 },
             easiest: INFINITE,
             easiest_followed: INFINITE,
+            finite: (-FARTHEST, FARTHEST),
             hardest_is_any,
             easiest_is_any: true,
         }
@@ -141,13 +156,13 @@ impl<'a> Probe<'a> {
     pub(crate) fn boundary(&mut self, dial: &Dial, mut no: i64, mut yes: i64) -> i64 {
         const GUESSES: usize = 12;
         if no == -INFINITE {
-            no = -FARTHEST;
+            no = dial.finite.0;
             if self.is_yes(dial, no) {
                 return no;
             }
         }
         if yes == INFINITE {
-            yes = FARTHEST;
+            yes = dial.finite.1;
             if !self.is_yes(dial, yes) {
                 return INFINITE;
             }
@@ -185,7 +200,7 @@ impl<'a> Probe<'a> {
     /// There is one at most where late news of chains makes the reduction too careful.
     pub(crate) fn last_yes(&mut self, dial: &Dial, mut yes: i64, mut no: i64) -> i64 {
         if no == INFINITE {
-            no = FARTHEST;
+            no = dial.finite.1;
             if self.is_yes(dial, no) {
                 return no;
             }

@@ -17,7 +17,7 @@ use damage::{unreadable, with_comma};
 use foreign::{Found, begins_definition, foreign_text, foreign_token};
 pub(crate) use token::Tokens;
 
-pub use token::{Kind, Token, tokens};
+pub use token::{Token, TokenKind, tokens};
 
 /// How deep forms may be nested.
 pub const MAX_NESTING: usize = 1_000;
@@ -150,13 +150,13 @@ impl<'a> Reader<'a> {
             self.note_line(last_end, token.start);
             last_end = token.end;
             match token.kind {
-                Kind::End => break,
+                TokenKind::End => break,
                 _ if self.is_at_prompt(token) => self.prompt(token),
-                Kind::Open => self.open(token),
-                Kind::Close => self.close(token),
-                Kind::Quote if self.stack.is_empty() => self.stray(token),
-                Kind::Quote => self.push(token.start, Mark::Quote),
-                Kind::UnclosedComment => {
+                TokenKind::Open => self.open(token),
+                TokenKind::Close => self.close(token),
+                TokenKind::Quote if self.stack.is_empty() => self.stray(token),
+                TokenKind::Quote => self.push(token.start, Mark::Quote),
+                TokenKind::UnclosedComment => {
                     let span = self.span(token.start, token.start + 2);
                     self.problems.push(
                         Diagnostic::error(Code::UnclosedComment, span, "this comment is never closed")
@@ -169,8 +169,8 @@ impl<'a> Reader<'a> {
 
                 _ if self.stack.is_empty() => self.stray(token),
                 _ if self.skipped_as_foreign(token) => {}
-                Kind::Number if self.skipped_as_number(token) => {}
-                Kind::Unreadable => self.unreadable(token),
+                TokenKind::Number if self.skipped_as_number(token) => {}
+                TokenKind::Unreadable => self.unreadable(token),
                 _ => self.atom(token),
             }
             self.first_on_line = false;
@@ -298,7 +298,7 @@ impl<'a> Reader<'a> {
         let text = &self.text[token.start..token.end];
         let span = self.span(token.start, token.end);
         let kind = match token.kind {
-            Kind::String => {
+            TokenKind::String => {
                 // A string that runs over the beginning of a definition has lost its closing quote.
                 let runaway = text.match_indices('\n').any(|(at, _)| begins_definition(&text[at + 1..]));
                 if runaway {
@@ -311,13 +311,13 @@ impl<'a> Reader<'a> {
                 }
                 FormKind::String(unescape(&text[1..text.len() - 1]))
             }
-            Kind::UnclosedString => {
+            TokenKind::UnclosedString => {
                 self.unclosed_string(token.start);
                 return;
             }
-            Kind::Number => FormKind::Number(text.trim_start_matches('+').to_lowercase()),
-            Kind::Keyword => FormKind::Keyword(text[1..].to_lowercase()),
-            Kind::Uninterned => FormKind::Uninterned(text[2..].to_lowercase()),
+            TokenKind::Number => FormKind::Number(text.trim_start_matches('+').to_lowercase()),
+            TokenKind::Keyword => FormKind::Keyword(text[1..].to_lowercase()),
+            TokenKind::Uninterned => FormKind::Uninterned(text[2..].to_lowercase()),
             _ => FormKind::Symbol(symbol(text)),
         };
         if self.skipped == 0 {
@@ -397,11 +397,11 @@ impl<'a> Reader<'a> {
         for _ in 0..NEAR {
             let token = tokens.take();
             match (&self.text[token.start..token.end], token.kind) {
-                (_, Kind::End) => return None,
-                ("[" | "{", _) | (_, Kind::Open) => depth += 1,
+                (_, TokenKind::End) => return None,
+                ("[" | "{", _) | (_, TokenKind::Open) => depth += 1,
                 ("]" | "}", _) if depth == 0 => return Some(token.start),
-                (_, Kind::Close) if depth == 0 => return None,
-                ("]" | "}", _) | (_, Kind::Close) => depth -= 1,
+                (_, TokenKind::Close) if depth == 0 => return None,
+                ("]" | "}", _) | (_, TokenKind::Close) => depth -= 1,
                 _ => {}
             }
         }

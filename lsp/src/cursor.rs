@@ -2,7 +2,7 @@
 //! only, as there may be no forms yet.
 
 use kirk_compiler::Span;
-use kirk_compiler::read::{Kind, Token, tokens};
+use kirk_compiler::read::{Token, TokenKind, tokens};
 use kirk_compiler::words::{DEFINITIONS, Keyword, SLOT, word};
 
 /// The place in a text.
@@ -39,12 +39,12 @@ pub(crate) fn cursor(text: &str, offset: u32) -> Option<Cursor<'_>> {
     for token in tokens.iter().take_while(|token| token.start < offset) {
         let written = &text[token.start..token.end];
         match token.kind {
-            Kind::String | Kind::UnclosedString
-                if offset < token.end || token.kind == Kind::UnclosedString =>
+            TokenKind::String | TokenKind::UnclosedString
+                if offset < token.end || token.kind == TokenKind::UnclosedString =>
             {
                 return None;
             }
-            Kind::Open => {
+            TokenKind::Open => {
                 if starts_a_line(text, token.start) && begins_definition(text, token.start) {
                     cursor.open.clear();
                 }
@@ -53,14 +53,16 @@ pub(crate) fn cursor(text: &str, offset: u32) -> Option<Cursor<'_>> {
                 (cursor.first, cursor.keyword) = (true, None);
                 continue;
             }
-            Kind::Close => {
+            TokenKind::Close => {
                 cursor.open.pop();
             }
-            Kind::Symbol | Kind::Keyword | Kind::Number | Kind::Uninterned if offset <= token.end => {
+            TokenKind::Symbol | TokenKind::Keyword | TokenKind::Number | TokenKind::Uninterned
+                if offset <= token.end =>
+            {
                 cursor.word = Span::new(0, token.start, token.end);
                 break;
             }
-            Kind::Quote => continue,
+            TokenKind::Quote => continue,
             _ => {
                 if let Some(open) = cursor.open.last_mut().filter(|open| open.before == 0) {
                     open.head = written;
@@ -69,7 +71,7 @@ pub(crate) fn cursor(text: &str, offset: u32) -> Option<Cursor<'_>> {
             }
         }
         cursor.first = false;
-        cursor.keyword = (token.kind == Kind::Keyword).then(|| written[1..].to_lowercase());
+        cursor.keyword = (token.kind == TokenKind::Keyword).then(|| written[1..].to_lowercase());
     }
     Some(cursor)
 }
@@ -121,7 +123,7 @@ pub(crate) fn comments(text: &str, tokens: &[Token]) -> Vec<Span> {
     let ends = tokens.iter().map(|token| (token.start, token.end, token.kind)).chain([(
         text.len(),
         text.len(),
-        Kind::End,
+        TokenKind::End,
     )]);
     for (start, end, kind) in ends {
         let mut at = last;
@@ -135,7 +137,7 @@ pub(crate) fn comments(text: &str, tokens: &[Token]) -> Vec<Span> {
             found.push(Span::new(0, begin, begin + rest[..length].trim_end_matches('\r').len()));
             at = begin + length;
         }
-        if kind == Kind::UnclosedComment {
+        if kind == TokenKind::UnclosedComment {
             found.push(Span::new(0, start, end));
         }
         last = end;

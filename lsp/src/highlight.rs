@@ -1,6 +1,6 @@
 //! What each piece of a text is, for colours that know the names.
 
-use kirk_compiler::read::{Kind, tokens};
+use kirk_compiler::read::{TokenKind, tokens};
 use kirk_compiler::words::{Position, word};
 use kirk_compiler::{Span, SymbolKind};
 
@@ -63,7 +63,7 @@ pub fn highlight(analysis: &Analysis) -> Vec<Highlight> {
     let mut after_open = false;
     for token in &tokens {
         let span = Span::new(0, token.start, token.end);
-        let first = std::mem::replace(&mut after_open, token.kind == Kind::Open);
+        let first = std::mem::replace(&mut after_open, token.kind == TokenKind::Open);
         let written = &text[token.start..token.end];
         while names.next_if(|(place, _)| place.span.start < span.start).is_some() {}
         if let Some((place, symbol)) = names.next_if(|(place, _)| place.span == span) {
@@ -72,11 +72,11 @@ pub fn highlight(analysis: &Analysis) -> Vec<Highlight> {
             continue;
         }
         let kind = match token.kind {
-            Kind::String | Kind::UnclosedString => HighlightKind::String,
-            Kind::Number => HighlightKind::Number,
-            Kind::Keyword => HighlightKind::Property,
-            Kind::Uninterned => HighlightKind::Namespace,
-            Kind::Symbol => match word(written.rsplit(':').next().unwrap_or(written)) {
+            TokenKind::String | TokenKind::UnclosedString => HighlightKind::String,
+            TokenKind::Number => HighlightKind::Number,
+            TokenKind::Keyword => HighlightKind::Property,
+            TokenKind::Uninterned => HighlightKind::Namespace,
+            TokenKind::Symbol => match word(written.rsplit(':').next().unwrap_or(written)) {
                 Some(word) if first && word.position == Position::Number => HighlightKind::Operator,
                 Some(_) if first => HighlightKind::Keyword,
                 None if matches!(written, "t" | "nil" | "T" | "NIL") => HighlightKind::Keyword,

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use kirk_compiler::read::{Kind, tokens};
+use kirk_compiler::read::{TokenKind, tokens};
 use kirk_compiler::words::word;
 use kirk_compiler::{Place, Severity, Span, Symbol, SymbolKind, Symbols};
 
@@ -14,7 +14,7 @@ use crate::definition::bare;
 pub fn prepare_rename(analysis: &Analysis, offset: u32) -> Result<Span, String> {
     let Some((symbol, place)) = analysis.symbols.at(0, offset) else {
         let written = pointed_at(analysis.text(), offset).map_or("", |cursor| analysis.slice(cursor.word));
-        let is_number = matches!(tokens(written).as_slice(), [one] if one.kind == Kind::Number);
+        let is_number = matches!(tokens(written).as_slice(), [one] if one.kind == TokenKind::Number);
         return Err(match written {
             "" => "There is no name here.".to_string(),
             _ if is_number => format!("{written} is a number, and no name."),
@@ -34,7 +34,7 @@ pub fn rename(analysis: &Analysis, offset: u32, new: &str) -> Result<Vec<(Span, 
     let Some((symbol, _)) = analysis.symbols.at(0, offset) else {
         return Err("There is no name here.".to_string());
     };
-    let is_name = matches!(tokens(new).as_slice(), [one] if one.kind == Kind::Symbol && one.end - one.start == new.len());
+    let is_name = matches!(tokens(new).as_slice(), [one] if one.kind == TokenKind::Symbol && one.end - one.start == new.len());
     if !is_name || new.contains(':') {
         return Err(format!(
             "`{new}` is not a name: names are letters, digits and `-+*/<>=.!?%&$_~^@`, and no number."

@@ -9,31 +9,31 @@ const RIGHTMOST: usize = 60;
 
 /// The text of a tree.
 pub(super) fn lay_out(nodes: &[Node<'_>]) -> String {
-    let mut layout = Layout { text: String::new(), column: 0 };
+    let mut writer = Writer { text: String::new(), column: 0 };
     for (index, node) in nodes.iter().enumerate() {
         match &node.kind {
-            NodeKind::Comment(text, Where::Behind | Where::Inside) if index > 0 => layout.behind(text),
+            NodeKind::Comment(text, Where::Behind | Where::Inside) if index > 0 => writer.behind(text),
             _ => {
                 if index > 0 {
-                    layout.line(0, node.blank);
+                    writer.line(0, node.blank);
                 }
-                layout.node(node, Role::Form, 0);
+                writer.node(node, Role::Form, 0);
             }
         }
     }
-    if !layout.text.is_empty() {
-        layout.text.push('\n');
+    if !writer.text.is_empty() {
+        writer.text.push('\n');
     }
-    layout.text
+    writer.text
 }
 
-struct Layout {
+struct Writer {
     text: String,
     /// How much stands on the last line.
     column: usize,
 }
 
-impl Layout {
+impl Writer {
     /// Writes a form, after which `closing` parentheses follow.
     fn node(&mut self, node: &Node<'_>, role: Role, closing: usize) {
         match &node.kind {

@@ -2,7 +2,7 @@
 
 use super::node::{Node, NodeKind, Where};
 use super::rules::width;
-use crate::read::{Kind, Tokens};
+use crate::read::{TokenKind, Tokens};
 
 /// The top level of a text.
 pub(super) fn tree(text: &str) -> Vec<Node<'_>> {
@@ -13,7 +13,7 @@ pub(super) fn tree(text: &str) -> Vec<Node<'_>> {
     let mut last_end = 0;
     loop {
         let token = tokens.take();
-        let end = if token.kind == Kind::End { text.len() } else { token.start };
+        let end = if token.kind == TokenKind::End { text.len() } else { token.start };
         let mut gap = Gap { rest: text.get(last_end..end).unwrap_or(""), newlines: 0, first: last_end == 0 };
         while let Some((comment, place, before)) = gap.comment() {
             if let Some((nodes, _)) = open.last_mut() {
@@ -24,13 +24,13 @@ pub(super) fn tree(text: &str) -> Vec<Node<'_>> {
         let blank = gap.newlines > 1;
         last_end = token.end;
         match token.kind {
-            Kind::End => break,
-            Kind::Open => {
+            TokenKind::End => break,
+            TokenKind::Open => {
                 open.push((Vec::new(), blank));
                 quotes.push(Vec::new());
             }
-            Kind::Quote => quotes.last_mut().into_iter().for_each(|pending| pending.push(blank)),
-            Kind::Close => {
+            TokenKind::Quote => quotes.last_mut().into_iter().for_each(|pending| pending.push(blank)),
+            TokenKind::Close => {
                 let Some((nodes, blank)) = open.pop().filter(|_| !open.is_empty()) else { break };
                 quotes.pop();
                 finish(&mut open, &mut quotes, NodeKind::List(nodes), blank);

@@ -27,11 +27,11 @@ pub(super) fn notes_on_latency(network: &Network, origins: &Origins, root: &Epis
     if found.groups.is_empty() {
         return Vec::new();
     }
-    let names = Names::new(root);
+    let episodes = Episodes::new(root);
     found
         .groups
         .iter()
-        .filter_map(|group| note(&found, group, &names, network, origins))
+        .filter_map(|group| note(&found, group, &episodes, network, origins))
         .take(MOST_NOTES)
         .collect()
 }
@@ -39,18 +39,18 @@ pub(super) fn notes_on_latency(network: &Network, origins: &Origins, root: &Epis
 fn note(
     found: &Punctuality,
     group: &Group,
-    names: &Names<'_>,
+    episodes: &Episodes<'_>,
     network: &Network,
     origins: &Origins,
 ) -> Option<Diagnostic> {
     let mut late = group.others.iter().filter_map(|exact| {
-        let episode = names.activity(&exact.events)?;
+        let episode = episodes.activity(&exact.events)?;
         let shares = found.because(group, exact, network).ok()??;
         Some((episode, exact, shares))
     });
     let (episode, exact, shares) = late.next()?;
     let name = clip(&episode.name);
-    let (when, moment) = names.moment(group, exact.after, network);
+    let (when, moment) = episodes.moment(group, exact.after, network);
     let message = format!("`{name}` can never start late: it has to start {when}");
     let mut note = Diagnostic::note(Code::NeverLate, episode.span, message)
         .primary("the first moment at which this can start is also the last");
@@ -76,19 +76,19 @@ fn note(
 }
 
 /// Which episode starts or ends with an event.
-struct Names<'a> {
+struct Episodes<'a> {
     starts: HashMap<EventId, &'a Episode>,
     ends: HashMap<EventId, &'a Episode>,
 }
 
-impl<'a> Names<'a> {
-    fn new(root: &'a Episode) -> Names<'a> {
-        let mut names = Names { starts: HashMap::new(), ends: HashMap::new() };
+impl<'a> Episodes<'a> {
+    fn new(root: &'a Episode) -> Episodes<'a> {
+        let mut episodes = Episodes { starts: HashMap::new(), ends: HashMap::new() };
         for (episode, (start, end)) in events_of(root) {
-            names.starts.insert(start, episode);
-            names.ends.insert(end, episode);
+            episodes.starts.insert(start, episode);
+            episodes.ends.insert(end, episode);
         }
-        names
+        episodes
     }
 
     /// The activity that starts there.

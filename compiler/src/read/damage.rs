@@ -1,7 +1,7 @@
 //! What is damaged in a text: parentheses that do not pair, words outside of all forms, characters without a meaning.
 
 use super::foreign::{begins_definition, foreign_line, is_prompt};
-use super::{Kind, Reader, Token};
+use super::{Reader, Token, TokenKind};
 use crate::code::Code;
 use crate::diagnostic::{Diagnostic, Edit};
 use crate::form::{Form, FormKind, clip};
@@ -12,7 +12,7 @@ impl Reader<'_> {
     /// text, unless it begins with a parenthesis.
     pub(super) fn is_at_prompt(&self, token: Token) -> bool {
         token.start == self.line_start
-            && (token.kind == Kind::Open || !self.stack.is_empty())
+            && (token.kind == TokenKind::Open || !self.stack.is_empty())
             && is_prompt(self.text[token.start..].lines().next().unwrap_or(""))
     }
 
@@ -105,7 +105,7 @@ impl Reader<'_> {
         let mut end = token.end;
         loop {
             let next = self.tokens.peek();
-            if next.kind != Kind::Close {
+            if next.kind != TokenKind::Close {
                 break;
             }
             end = next.end;

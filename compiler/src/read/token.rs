@@ -9,7 +9,7 @@ struct Grammar;
 
 /// What a token is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum TokenKind {
     /// The end of the text.
     End,
     /// `(`.
@@ -40,7 +40,7 @@ pub enum Kind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Token {
     /// What it is.
-    pub kind: Kind,
+    pub kind: TokenKind,
     /// Its first byte.
     pub start: usize,
     /// The byte after its last.
@@ -50,7 +50,7 @@ pub struct Token {
 /// All tokens of a text, without comments, and without the one for its end.
 pub fn tokens(text: &str) -> Vec<Token> {
     let mut tokens = Tokens::new(text);
-    std::iter::from_fn(|| Some(tokens.take()).filter(|token| token.kind != Kind::End)).collect()
+    std::iter::from_fn(|| Some(tokens.take()).filter(|token| token.kind != TokenKind::End)).collect()
 }
 
 /// Reads a text token by token.
@@ -97,24 +97,26 @@ impl<'a> Tokens<'a> {
         loop {
             let (rule, start, end) = step(Rule::item, self.text, at);
             let kind = match rule {
-                Rule::open => Kind::Open,
-                Rule::close => Kind::Close,
-                Rule::quote => Kind::Quote,
-                Rule::string => Kind::String,
-                Rule::unclosed_string => Kind::UnclosedString,
-                Rule::uninterned => Kind::Uninterned,
-                Rule::number => Kind::Number,
-                Rule::keyword => Kind::Keyword,
-                Rule::symbol => Kind::Symbol,
-                Rule::EOI => Kind::End,
+                Rule::open => TokenKind::Open,
+                Rule::close => TokenKind::Close,
+                Rule::quote => TokenKind::Quote,
+                Rule::string => TokenKind::String,
+                Rule::unclosed_string => TokenKind::UnclosedString,
+                Rule::uninterned => TokenKind::Uninterned,
+                Rule::number => TokenKind::Number,
+                Rule::keyword => TokenKind::Keyword,
+                Rule::symbol => TokenKind::Symbol,
+                Rule::EOI => TokenKind::End,
                 Rule::comment_open => {
                     match self.comment_end(end) {
                         Some(after) => at = after,
-                        None => return Token { kind: Kind::UnclosedComment, start, end: self.text.len() },
+                        None => {
+                            return Token { kind: TokenKind::UnclosedComment, start, end: self.text.len() };
+                        }
                     }
                     continue;
                 }
-                _ => Kind::Unreadable,
+                _ => TokenKind::Unreadable,
             };
             return Token { kind, start, end };
         }

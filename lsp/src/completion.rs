@@ -64,13 +64,13 @@ pub fn completion(analysis: &Analysis, offset: u32) -> Vec<Completion> {
 fn wanted(cursor: &Cursor<'_>) -> Vec<Part> {
     let around = cursor.head(usize::from(cursor.first));
     let before = cursor.open.iter().rev().nth(usize::from(cursor.first)).map(|open| open.before);
-    // How many parts stand before the cursor, and before the parenthesis that is open there.
+    // How many parts stand before the cursor, or before the parenthesis it stands behind.
     let Some(before) = before.map(|before| before.saturating_sub(1 + usize::from(cursor.first))) else {
         return vec![Part::Form(Position::Definition)];
     };
-    match cursor.keyword.as_deref().and_then(keyword).map_or(Part::Name, |keyword| keyword.value) {
-        Part::Name => {}
-        value => return vec![value],
+    let value = cursor.keyword.as_deref().and_then(keyword).map(|keyword| keyword.value);
+    if let Some(value) = value.filter(|value| *value != Part::Name) {
+        return vec![value];
     }
     let form = word(&around);
     match form.and_then(|form| form.part(before)) {
@@ -128,30 +128,24 @@ impl Offer<'_> {
                 self.add(Part::Number);
             }
             Part::Flag => ["t", "nil"].iter().for_each(|flag| self.plain(flag, CompletionKind::Value, "")),
-            Part::Occurrence => {
-                for symbol in &self.analysis.symbols.symbols {
-                    match symbol.kind {
-                        SymbolKind::Label => self.plain(&symbol.name, CompletionKind::Label, "a label"),
-                        SymbolKind::Program(_) => {
-                            self.plain(
-                                &symbol.name,
-                                CompletionKind::Program,
-                                "the one occurrence of a program",
-                            );
-                        }
-                        _ => {}
-                    }
-                }
-            }
-            Part::Class => {
-                for symbol in &self.analysis.symbols.symbols {
-                    if let SymbolKind::Class(_) = symbol.kind {
-                        self.plain(&symbol.name, CompletionKind::Class, "a class");
-                    }
-                }
-            }
+            Part::Occurrence => self.symbols(|kind| match kind {
+                SymbolKind::Label => Some((CompletionKind::Label, "a label")),
+                SymbolKind::Program(_) => Some((CompletionKind::Program, "the one occurrence of a program")),
+                _ => None,
+            }),
+            Part::Class => self.symbols(|kind| {
+                matches!(kind, SymbolKind::Class(_)).then_some((CompletionKind::Class, "a class"))
+            }),
             Part::Keywords | Part::Options | Part::Clause => self.keywords(),
             Part::Name | Part::List => {}
+        }
+    }
+
+    fn symbols(&mut self, wanted: impl Fn(SymbolKind) -> Option<(CompletionKind, &'static str)>) {
+        for symbol in &self.analysis.symbols.symbols {
+            if let Some((kind, about)) = wanted(symbol.kind) {
+                self.plain(&symbol.name, kind, about);
+            }
         }
     }
 

@@ -1,9 +1,13 @@
 //! The command line.
 
+mod repair;
+
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use jiff::{SignedDuration, Timestamp};
+
+pub(crate) use repair::{Prefer, RepairOf, SlackOf};
 
 /// Compiles RMPL control programs to temporal networks with uncertainty, proves that they can always be executed (or
 /// shows which lines make it impossible), and executes them.
@@ -50,6 +54,8 @@ pub(crate) enum Command {
     Replay(Replay),
     /// Prints all diagnostics and the verdict for each file.
     Check(Check),
+    /// Prints what would make a mission controllable, each proposal proven, and makes one of them if that is wanted.
+    Repair(RepairOf),
     /// Prints how much is left of a "yes": how far each bound can move, how late everything may start, how late news may be.
     Slack(SlackOf),
     /// Prints what a mission is compiled to.
@@ -364,6 +370,9 @@ pub(crate) struct Check {
     /// What to assume about the delays of news, instead of what is written.
     #[arg(long, value_enum, default_value_t = Delays::AsWritten, value_name = "WHAT")]
     pub(crate) delays: Delays,
+    /// Also say what a conflict is in the theory: the signed amounts along the way, and their sum.
+    #[arg(long)]
+    pub(crate) theory: bool,
     /// How to print the result; short is `FILE:LINE:COLUMN: KIND: MESSAGE` for every place a message is about, JSON is one
     /// document per file, one per line, SARIF is one log of all files.
     #[arg(long, value_enum, default_value_t = CheckFormat::Text)]
@@ -435,18 +444,6 @@ pub(crate) enum StageFormat {
     Sexpr,
     Dot,
     Graphml,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct SlackOf {
-    /// The mission or network, or `-` for standard input; several files of RMPL are one program.
-    #[arg(value_name = "FILE", required = true)]
-    pub(crate) files: Vec<String>,
-    #[command(flatten)]
-    pub(crate) selection: Selection,
-    /// How to print the result.
-    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
-    pub(crate) format: TextOrJson,
 }
 
 #[derive(Debug, Args)]

@@ -24,7 +24,7 @@ pub(crate) fn check(arguments: &Check, common: &Common) -> io::Result<Status> {
     let mut worst = Status::Yes;
     let mut log = Log::default();
     for (file, mut input) in inputs(arguments) {
-        let judged = judge_assuming(&mut input, arguments.delays);
+        let judged = judge_assuming(&mut input, arguments.delays, arguments.theory);
         worst = worst.max(match &judged {
             None => Status::Wrong,
             Some(Judged { conflict: None, .. }) => Status::Yes,
@@ -80,10 +80,10 @@ pub(crate) struct Judged {
 
 /// Decides; a conflict becomes one of the diagnostics. `None` if there is no network.
 pub(crate) fn judge(input: &mut Input) -> Option<Judged> {
-    judge_assuming(input, Delays::AsWritten)
+    judge_assuming(input, Delays::AsWritten, false)
 }
 
-fn judge_assuming(input: &mut Input, delays: Delays) -> Option<Judged> {
+fn judge_assuming(input: &mut Input, delays: Delays, theory: bool) -> Option<Judged> {
     let network = input.network.as_ref()?;
     let start = Instant::now();
     let decided = match delays.assumption() {
@@ -102,10 +102,12 @@ fn judge_assuming(input: &mut Input, delays: Delays) -> Option<Judged> {
         }
     };
     let merged = merge(network).network;
-    if let Some(conflict) = &conflict {
-        let mut diagnostic = conflict::diagnostic(conflict, assumed.as_ref().unwrap_or(network), input);
-        diagnostic.message.push_str(delays.words());
-        input.diagnostics.push(diagnostic);
+    if conflict.is_some() {
+        let judged = assumed.as_ref().unwrap_or(network);
+        for mut diagnostic in conflict::diagnostics(judged, input, theory) {
+            diagnostic.message.push_str(delays.words());
+            input.diagnostics.push(diagnostic);
+        }
     }
     Some(Judged { conflict, seconds, merged, assumed })
 }

@@ -29,7 +29,7 @@ enum Content {
     /// RMPL: how far the compiler got, and if to a network, where its constraints come from and where its program is named.
     Program { compilation: Box<Compilation>, origins: Option<(Origins, Span)> },
     /// A network: where its constraints stand, and whether its name stands there or is that of its file.
-    Network { places: SourceMap, named: bool },
+    Network { origins: Box<Origins>, named: bool },
     /// Nothing that could be read.
     Unread,
 }
@@ -278,7 +278,8 @@ fn network(name: &str, text: String, reader: Reader) -> Input {
     let sources = vec![Source::new(name, text)];
     match read {
         Ok((network, places)) => {
-            let content = Content::Network { places, named: !network.name().is_empty() };
+            let origins = Box::new(Origins::of_network(&network, &places));
+            let content = Content::Network { origins, named: !network.name().is_empty() };
             Input { sources, diagnostics: Vec::new(), content, network: Some(named(network, name)) }
         }
         Err(problems) => {
@@ -318,19 +319,43 @@ impl Input {
         }
     }
 
+    /// What becomes of the same input with other texts.
+    pub(crate) fn with_sources(&self, sources: Vec<Source>, selection: &Selection) -> Input {
+        let reader = |source: &Source| match kind(&source.name, &source.text) {
+            Kind::Network(reader) if self.is_network() => Some(reader),
+            _ => None,
+        };
+        match sources.first().and_then(reader) {
+            Some(reader) => network(&sources[0].name, sources[0].text.clone(), reader),
+            None => program(sources, selection),
+        }
+    }
+
     /// How far the compiler got, if it is RMPL.
     pub(crate) fn compilation(&self) -> Option<&Compilation> {
         if let Content::Program { compilation, .. } = &self.content { Some(compilation) } else { None }
     }
 
-    /// Where its constraints come from and where its program is named, if it is RMPL.
-    pub(crate) fn origins(&self) -> Option<&(Origins, Span)> {
-        if let Content::Program { origins, .. } = &self.content { origins.as_ref() } else { None }
+    /// Where its constraints come from.
+    pub(crate) fn origins(&self) -> Option<&Origins> {
+        match &self.content {
+            Content::Program { origins, .. } => origins.as_ref().map(|(origins, _)| origins),
+            Content::Network { origins, .. } => Some(origins),
+            Content::Unread => None,
+        }
     }
 
-    /// Where its constraints stand, if it is a network.
-    pub(crate) fn places(&self) -> Option<&SourceMap> {
-        if let Content::Network { places, .. } = &self.content { Some(places) } else { None }
+    /// Where the program that is executed is named, if it is RMPL.
+    pub(crate) fn program_span(&self) -> Option<Span> {
+        match &self.content {
+            Content::Program { origins: Some((_, program)), .. } => Some(*program),
+            _ => None,
+        }
+    }
+
+    /// True if it is a network file.
+    pub(crate) fn is_network(&self) -> bool {
+        matches!(self.content, Content::Network { .. })
     }
 
     /// Refuses options that choose among programs: a network has none.

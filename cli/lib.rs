@@ -56,7 +56,7 @@ pub use kirk_compiler as compiler;
 pub use kirk_network as network;
 pub use kirk_runtime as runtime;
 
-pub use kirk_compiler::{Compilation, Diagnostic, Options, Source, compile, explain_conflict};
+pub use kirk_compiler::{Compilation, Diagnostic, Explain, Options, Source, compile};
 pub use kirk_network::{Conflict, Duration, EventId, Network, Time, Verdict, check};
 pub use kirk_runtime::{
     Dispatch, Dispatcher, NoPlan, Plan, Reception, Settings, Simulation, Strategy, simulate, verify,

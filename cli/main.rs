@@ -18,6 +18,8 @@ mod live;
 mod lsp;
 mod news;
 mod output;
+mod repair;
+mod replace;
 mod replay;
 mod report;
 mod run;
@@ -52,6 +54,7 @@ fn execute(arguments: &Arguments) -> Status {
         Command::Resume(resume) => execute::resume(resume, &arguments.common),
         Command::Replay(replay) => replay::replay(replay, &arguments.common),
         Command::Check(check) => check::check(check, &arguments.common),
+        Command::Repair(repair) => repair::repair_of(repair, &arguments.common),
         Command::Slack(slack) => slack::slack_of(slack, &arguments.common),
         Command::Compile(compile) => compile::compile(compile, &arguments.common),
         Command::Verify(verify) => verify::verify(verify, &arguments.common),

@@ -10,7 +10,7 @@ use kirk_compiler::{Diagnostic, LineIndex, Severity, Source, Span, Suggestion};
 use serde::Serialize;
 
 use crate::args::{Color, Common};
-use crate::foreign::{as_long, one_line};
+use crate::foreign::{as_long, one_line, visible};
 use crate::output::print_line;
 
 /// The sources that diagnostics point into.
@@ -104,7 +104,7 @@ impl<'a> Reporter<'a> {
             }
         }
         if let Some(help) = &diagnostic.help {
-            cooked.notes.push(one_line(help).into_owned());
+            cooked.notes.push(visible(help).into_owned());
         }
         cooked
     }

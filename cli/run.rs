@@ -33,11 +33,11 @@ pub(crate) fn run(arguments: &Run, common: &Common) -> io::Result<Status> {
             input.diagnostics.push(too_large());
             None
         }
-        Some(Err(NoPlan::Uncontrollable(found))) => Some(Err(found)),
+        Some(Err(NoPlan::Uncontrollable(_))) => Some(Err(())),
     };
-    if let (Some(Err(found)), Some(network)) = (&plan, &input.network) {
-        let diagnostic = conflict::diagnostic(found, network, &input);
-        input.diagnostics.push(diagnostic);
+    if let (Some(Err(())), Some(network)) = (&plan, &input.network) {
+        let told = conflict::diagnostics(network, &input, false);
+        input.diagnostics.extend(told);
     }
     let reported = |diagnostic: &Diagnostic| match arguments.format {
         // Nothing but the execution goes to standard output, and nobody looks at notes beside JSON.

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::io;
 
 use kirk_compiler::episode::Kind;
-use kirk_compiler::{OriginKind, Origins, Span, events_of};
-use kirk_network::json::Seconds;
+use kirk_compiler::repair::what;
+use kirk_compiler::{Origins, Span, events_of};
 use kirk_network::merge::{Merged, merge};
 use kirk_network::promise::{promises, stretch};
 use kirk_network::slack::{Factor, Slack, beyond, bounds, common_factor, slack};
@@ -106,7 +106,7 @@ fn measure(network: &Network, input: &Input) -> Result<Option<Left>, TooLarge> {
     let step = |step: Step| {
         let bound = step.part.bound(network);
         let needs = if step.needs < Duration::ZERO { -bound } else { bound };
-        Some((needs, words(step.part, network, input)?))
+        Some((needs, words(step.part, input)?))
     };
     let critical = steps.into_iter().filter_map(step).collect();
     let news = bounds.iter().filter_map(|bound| match bound.slack.knob.parts()[0] {
@@ -123,17 +123,15 @@ fn measure(network: &Network, input: &Input) -> Result<Option<Left>, TooLarge> {
 
 /// What can be moved: each bound that is written, with what it is and where. What is written once moves together.
 fn knobs(network: &Network, input: &Input) -> Vec<(Knob, String, Option<Span>)> {
-    let Some((origins, _)) = input.origins() else {
-        let place = |part: Part| {
-            let place = input.places()?.of(part)?;
-            Some(Span::new(0, place.start, place.end))
-        };
+    let Some(origins) = input.origins() else { return Vec::new() };
+    if input.is_network() {
+        let place = |part: Part| origins.of(part).map(|(origin, which)| origin.places[which]);
         let named = bounds(network).into_iter().filter_map(|knob| {
             let part = knob.parts()[0];
-            Some((knob, words(part, network, input)?, place(part)))
+            Some((knob, words(part, input)?, place(part)))
         });
         return named.filter(|(knob, ..)| is_worth_a_line(knob.parts()[0], network)).collect();
-    };
+    }
     let mut written: BTreeMap<(Span, Side), Vec<Part>> = BTreeMap::new();
     for part in bounds(network).iter().map(|knob| knob.parts()[0]) {
         if let Some(place) = written_at(part, origins).filter(|_| is_worth_a_line(part, network)) {
@@ -141,7 +139,7 @@ fn knobs(network: &Network, input: &Input) -> Vec<(Knob, String, Option<Span>)> 
         }
     }
     let knob = |((place, _), parts): ((Span, Side), Vec<Part>)| {
-        let mut what = words(parts[0], network, input)?;
+        let mut what = words(parts[0], input)?;
         if parts.len() > 1 {
             what.push_str(&format!(" ({} occurrences together)", parts.len()));
         }
@@ -160,16 +158,8 @@ fn is_worth_a_line(part: Part, network: &Network) -> bool {
 
 /// Where a bound is written by itself, if it is.
 fn written_at(part: Part, origins: &Origins) -> Option<Span> {
-    let (origin, side) = match part {
-        Part::RequirementLower(index) => (origins.requirements.get(index)?, 0),
-        Part::RequirementUpper(index) => (origins.requirements.get(index)?, 1),
-        Part::LinkLower(index) => (origins.contingents.get(index)?, 0),
-        Part::LinkUpper(index) => (origins.contingents.get(index)?, 1),
-        Part::DelayMin(index) => (origins.contingents.get(index)?, 2),
-        Part::DelayMax(index) => (origins.contingents.get(index)?, 3),
-        Part::AfterOrigin | Part::Join(_) => return None,
-    };
-    let is_written = !matches!(origin.kind, OriginKind::Join | OriginKind::Order)
+    let (origin, side) = origins.of(part)?;
+    let is_written = origin.kind.is_amount()
         && (origin.places[side] != origin.span || matches!(part, Part::LinkUpper(_) | Part::DelayMax(_)));
     is_written.then_some(origin.places[side])
 }
@@ -207,44 +197,8 @@ impl Side {
 }
 
 /// What a bound is about; `None` for what nobody wrote.
-fn words(part: Part, network: &Network, input: &Input) -> Option<String> {
-    if let Some((origins, _)) = input.origins() {
-        let (origin, nature) = match part {
-            Part::RequirementUpper(index) | Part::RequirementLower(index) => {
-                (origins.requirements.get(index)?, false)
-            }
-            Part::LinkLower(index) | Part::LinkUpper(index) => (origins.contingents.get(index)?, true),
-            Part::DelayMin(index) | Part::DelayMax(index) => {
-                return Some(format!(
-                    "how late the end of {} is heard",
-                    origins.contingents.get(index)?.subject
-                ));
-            }
-            Part::AfterOrigin | Part::Join(_) => return None,
-        };
-        return match origin.kind {
-            OriginKind::Join | OriginKind::Order => None,
-            OriginKind::Between => Some(origin.subject.clone()),
-            _ if nature => Some(format!("how long {} takes, Nature decides", origin.subject)),
-            _ => Some(format!("how long {} takes", origin.subject)),
-        };
-    }
-    let link = |index: usize| network.contingents()[index];
-    Some(match part {
-        Part::RequirementUpper(index) | Part::RequirementLower(index) => {
-            let requirement = network.requirements()[index];
-            let (from, to) = (network.label(requirement.from), network.label(requirement.to));
-            format!("requirements[{index}]: from `{from}` to `{to}`")
-        }
-        Part::LinkLower(index) | Part::LinkUpper(index) => {
-            let (from, to) = (network.label(link(index).from), network.label(link(index).to));
-            format!("contingents[{index}]: from `{from}` to `{to}`, Nature decides")
-        }
-        Part::DelayMin(index) | Part::DelayMax(index) => {
-            format!("contingents[{index}]: how late `{}` is heard", network.label(link(index).to))
-        }
-        Part::AfterOrigin | Part::Join(_) => return None,
-    })
+fn words(part: Part, input: &Input) -> Option<String> {
+    what(part, input.origins()?.of(part)?.0)
 }
 
 /// The activities of ours, with the latest start that can be promised and how long each may be made to take. Of a network, the
@@ -362,7 +316,7 @@ struct SlackJson<'a> {
     budget: Vec<NewsJson<'a>>,
     /// By what factor all longest delays may grow together; absent if no news is late.
     #[serde(skip_serializing_if = "Option::is_none")]
-    factor: Option<Option<Seconds>>,
+    factor: Option<Option<Duration>>,
 }
 
 #[derive(Serialize)]
@@ -371,34 +325,34 @@ struct BoundJson<'a> {
     file: Option<&'a str>,
     span: Option<SpanJson>,
     bound: Side,
-    value: Option<Seconds>,
-    least: Option<Seconds>,
-    most: Option<Seconds>,
-    room: Option<Seconds>,
+    value: Option<Duration>,
+    least: Option<Duration>,
+    most: Option<Duration>,
+    room: Option<Duration>,
 }
 
 #[derive(Serialize)]
 struct StepJson<'a> {
     what: &'a str,
-    needs: Seconds,
+    needs: Duration,
 }
 
 #[derive(Serialize)]
 struct ActivityJson<'a> {
     name: &'a str,
-    latest_start: Option<Seconds>,
-    may_take: Option<Seconds>,
+    latest_start: Option<Time>,
+    may_take: Option<Duration>,
 }
 
 #[derive(Serialize)]
 struct NewsJson<'a> {
     event: &'a str,
-    value: Option<Seconds>,
-    most: Option<Seconds>,
+    value: Option<Duration>,
+    most: Option<Duration>,
 }
 
-fn seconds(bound: Bound) -> Option<Seconds> {
-    bound.finite().map(Seconds)
+fn seconds(bound: Bound) -> Option<Duration> {
+    bound.finite()
 }
 
 impl<'a> SlackJson<'a> {
@@ -424,22 +378,18 @@ impl<'a> SlackJson<'a> {
             value: seconds(slack.value),
             least: seconds(slack.least),
             most: seconds(slack.most),
-            room: slack.room.map(Seconds),
+            room: slack.room,
         };
         SlackJson {
             controllable: true,
             slack: left.bounds.iter().map(bound).collect(),
-            critical: left
-                .critical
-                .iter()
-                .map(|(needs, what)| StepJson { what, needs: Seconds(*needs) })
-                .collect(),
+            critical: left.critical.iter().map(|(needs, what)| StepJson { what, needs: *needs }).collect(),
             activities: left
                 .activities
                 .iter()
                 .map(|Activity { name, latest, stretch }| ActivityJson {
                     name,
-                    latest_start: latest.map(|latest| Seconds(Duration::from_micros(latest.as_micros()))),
+                    latest_start: *latest,
                     may_take: stretch.and_then(seconds),
                 })
                 .collect(),
@@ -449,7 +399,7 @@ impl<'a> SlackJson<'a> {
                 .map(|(event, value, most)| NewsJson { event, value: seconds(*value), most: seconds(*most) })
                 .collect(),
             factor: left.factor.map(|factor| match factor {
-                Factor::Millionths(millionths) => Some(Seconds(Duration::from_micros(millionths))),
+                Factor::Millionths(millionths) => Some(Duration::from_micros(millionths)),
                 Factor::Unlimited => None,
             }),
             ..SlackJson::nothing(file)

@@ -5,19 +5,19 @@
 
 #![allow(clippy::print_stdout, reason = "an example shows what it does")]
 
-use kirk::{Dispatcher, NoPlan, Options, Plan, Settings, Source, Strategy, Time, compile, explain_conflict};
+use kirk::{Dispatcher, Explain, NoPlan, Options, Plan, Settings, Source, Strategy, Time, compile};
 
 fn main() -> Result<(), String> {
     let text = include_str!("rmpl/robot.rmpl");
-    let compilation = compile(&[Source::new("robot.rmpl", text)], &Options::default());
+    let sources = [Source::new("robot.rmpl", text)];
+    let compilation = compile(&sources, &Options::default());
     let Some(mission) = compilation.lowered else {
         return Err(compilation.diagnostics.iter().map(|problem| format!("{}\n", problem.message)).collect());
     };
     let plan = match Plan::new(&mission.network) {
         Ok(plan) => plan,
         Err(NoPlan::Uncontrollable(conflict)) => {
-            let problem = explain_conflict(&conflict, &mission.network, &mission.origins, mission.entry);
-            return Err(problem.message);
+            return Err(Explain::of(&mission, &sources).one(&conflict).message);
         }
         Err(NoPlan::TooLarge) => return Err("the durations add up to too much".to_string()),
     };

@@ -7,21 +7,22 @@
 use std::fs;
 use std::sync::LazyLock;
 
-use kirk_compiler::{Options, Severity, Source, compile, explain_conflict};
+use kirk_compiler::{Explain, Options, Severity, Source, compile};
 use kirk_network::json::ReadProblem;
-use kirk_network::{Network, Verdict, check, graphml, json, plain};
+use kirk_network::{Network, check, graphml, json, plain};
 use kirk_runtime::{Execution, verify};
 use proptest::prelude::*;
 
 /// What `kirk check` does with a program, without the terminal.
 fn check_program(text: &str) {
-    let compiled = compile(&[Source::new("x", text)], &Options::default());
+    let sources = [Source::new("x", text)];
+    let compiled = compile(&sources, &Options::default());
     let mut said = compiled.diagnostics;
     assert_eq!(compiled.lowered.is_none(), said.iter().any(|d| d.severity == Severity::Error), "{text}");
     if let Some(plan) = compiled.lowered
-        && let Ok(Verdict::Uncontrollable(conflict)) = check(&plan.network)
+        && let Ok(told) = Explain::of(&plan, &sources).all()
     {
-        said.push(explain_conflict(&conflict, &plan.network, &plan.origins, plan.entry));
+        said.extend(told);
     }
     for diagnostic in &said {
         for span in diagnostic.labels.iter().map(|label| label.span).chain([diagnostic.span]) {

@@ -43,6 +43,7 @@ fn what_belongs_in_one_place_is_named_in_one_place() {
         ("jiff", "."),
         ("ratatui", "."),
         ("signal-hook", "."),
+        ("similar", "."),
     ] {
         for folder in [".", "compiler", "executive", "lsp", "network", "runtime"] {
             let named =

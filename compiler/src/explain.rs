@@ -1,118 +1,227 @@
 //! A conflict in the words and places of the program: why it cannot be executed in every case.
 
 mod amounts;
+mod story;
 
+use kirk_network::conflicts::{conflicts, without};
+use kirk_network::stnu::TooLarge;
 use kirk_network::{Conflict, Duration, Network, Part, Share};
 
 use crate::code::Code;
-use crate::diagnostic::Diagnostic;
-use crate::lower::{EMPTY, Origin, OriginKind, Origins};
-use crate::source::Span;
+use crate::diagnostic::{Diagnostic, Suggestion};
+use crate::lower::Lowered;
+use crate::origins::{Origin, OriginKind, Origins};
+use crate::repair::amount as amount_in;
+use crate::source::{Source, Span};
+use story::{story, wrapped};
 
-/// How origins speak of the joins of a `parallel`.
-const PARALLEL: &str = "this `parallel`";
 /// What the joins of a `parallel` come to where Nature has no say.
 const JOINED: &str = "joined here: without slack, all parts start together and end together";
 
 /// Another amount alone would not do, whatever it is.
-const NOT_ALONE: &str = " No change of one amount alone is enough: several have to change, or what comes before what, or what is joined.";
+const NOT_ALONE: &str = "No change of one amount alone is enough: several have to change, or what comes before what, or what is \
+     joined. `kirk repair` looks for that.";
 
-/// What is found is one conflict, not all of them.
-const AFTERWARDS: &str = "; another conflict may show then.";
+/// Nothing is allowed too little here.
+const CIRCLE: &str = "No amount helps: what comes before what has to change. `kirk repair` tries which order could be left out.";
 
-/// Words a conflict. Its indices are those of `network`, which is the network of the plan, not merged.
-pub fn explain_conflict(
+/// A "no" that a cleverer use of news might turn.
+const CONSERVATIVE: &str = "This \"no\" rests on a chain of activities of which the first is heard late; a cleverer use of that news \
+     might still find a way.";
+
+/// How many conflicts are told; of more only how many there are.
+const MOST: usize = 10;
+/// How many are counted.
+const COUNTED: usize = 100;
+
+/// What is to be explained: a network that is not controllable, where it comes from, and how.
+#[derive(Clone, Copy, Debug)]
+pub struct Explain<'a> {
+    /// The network of the plan, not merged.
+    pub network: &'a Network,
+    /// Where its constraints come from.
+    pub origins: &'a Origins,
+    /// The texts they point into.
+    pub sources: &'a [Source],
+    /// Where what is executed is named, if it is.
+    pub program: Option<Span>,
+    /// The signed sum as well.
+    pub theory: bool,
+}
+
+impl<'a> Explain<'a> {
+    /// Of a program that was compiled from these sources.
+    pub fn of(lowered: &'a Lowered, sources: &'a [Source]) -> Explain<'a> {
+        let Lowered { network, origins, entry } = lowered;
+        Explain { network, origins, sources, program: Some(*entry), theory: false }
+    }
+
+    /// Every conflict that has no bound of ours in common with another, each with what would settle it; none if the network is
+    /// controllable.
+    ///
+    /// # Errors
+    /// [`TooLarge`] if the durations add up to more than 64-bit microseconds can hold.
+    pub fn all(&self) -> Result<Vec<Diagnostic>, TooLarge> {
+        let found = conflicts(self.network, COUNTED)?;
+        let told = found.len().min(MOST);
+        let mut diagnostics = Vec::new();
+        for (index, conflict) in found.iter().take(MOST).enumerate() {
+            // What settles one is seen when the others are out of the way.
+            let others = found.iter().enumerate().filter(|(other, _)| *other != index);
+            let rest =
+                others.fold(self.network.clone(), |rest, (_, other)| without(&rest, other).unwrap_or(rest));
+            diagnostics.push(self.told(conflict, &rest, found.len() > 1));
+        }
+        if found.len() > told {
+            let more = found.len() - told;
+            let least = if found.len() == COUNTED { "at least " } else { "" };
+            let text = format!("{least}{more} more conflicts are not shown.");
+            if let Some(last) = diagnostics.last_mut() {
+                last.help = Some(last.help.take().map_or(text.clone(), |help| format!("{help}\n{text}")));
+            }
+        }
+        Ok(diagnostics)
+    }
+
+    /// One conflict of it. Its indices are those of the network.
+    pub fn one(&self, conflict: &Conflict) -> Diagnostic {
+        self.told(conflict, self.network, false)
+    }
+
+    /// Words a conflict; `rest` is the network with the other conflicts out of the way.
+    fn told(&self, conflict: &Conflict, rest: &Network, is_one_of_several: bool) -> Diagnostic {
+        let Explain { network, origins, sources, program, theory } = *self;
+        let mut places: Vec<(Span, Vec<String>)> = Vec::new();
+        for share in &conflict.members {
+            let Some((span, text)) = say(share, network, origins, sources, theory) else { continue };
+            // That the parts are joined goes without saying where it is said what is joined.
+            if text == JOINED && places.iter().any(|(known, _)| *known == span) {
+                continue;
+            }
+            match places.iter_mut().find(|(known, _)| *known == span) {
+                Some((_, texts)) if !texts.contains(&text) => texts.push(text),
+                Some(_) => {}
+                None => places.push((span, vec![text])),
+            }
+        }
+        let name = network.name();
+        let message =
+            format!("`{name}` cannot be executed in every case: {}", what_kind(conflict, network, origins));
+        let mut told = places.into_iter().map(|(span, texts)| (span, texts.join("; ")));
+        let everywhere = "there is no way to execute this that works whatever happens".to_string();
+        // Where no program is named the message points at the first bound.
+        let (span, primary) = match program {
+            Some(span) => (span, everywhere),
+            None => told.next().unwrap_or((Span::default(), everywhere)),
+        };
+        let problem = Diagnostic::error(Code::NotControllable, span, message).primary(primary);
+        let problem = told.fold(problem, |problem, (span, text)| problem.label(span, text));
+        let mut help = story(conflict, network, origins, sources).unwrap_or_default();
+        if theory {
+            help.extend(wrapped("", &format!("The time they leave: {} < 0.", total(conflict))));
+        }
+        let enough = amounts::enough_alone(conflict, rest, origins, sources);
+        help.extend(advice(conflict, network, origins, enough.as_deref(), is_one_of_several));
+        if conflict.conservative {
+            help.extend(wrapped("", CONSERVATIVE));
+        }
+        let suggestions = enough.into_iter().flatten().map(|(_, suggestion)| suggestion);
+        let problem = Diagnostic { suggestions: suggestions.flatten().collect(), ..problem };
+        if help.is_empty() { problem } else { problem.help(help.join("\n")) }
+    }
+}
+
+/// What does not go together, for the headline.
+fn what_kind(conflict: &Conflict, network: &Network, origins: &Origins) -> &'static str {
+    let requirement = |part: Part| match part {
+        Part::RequirementUpper(index) | Part::RequirementLower(index) | Part::Join(index) => {
+            Some((origins.requirements.get(index)?, network.requirements().get(index)?))
+        }
+        _ => None,
+    };
+    let parts = || conflict.members.iter().map(|share| share.part);
+    let of_ours = |part: Part| {
+        let bound = part.bound(network) != Duration::ZERO || matches!(part, Part::RequirementUpper(_));
+        bound && requirement(part).is_some_and(|(origin, _)| origin.kind.is_amount())
+    };
+    let is_joined = |part: Part| requirement(part).is_some_and(|(origin, _)| origin.kind.is_join());
+    if is_circle(conflict) {
+        "these go round in a circle, each after the one before"
+    } else if !parts().any(of_ours) && parts().any(is_joined) {
+        "these ends cannot be made to meet"
+    } else {
+        "these bounds do not go together"
+    }
+}
+
+/// True if every step leads on, and none back.
+fn is_circle(conflict: &Conflict) -> bool {
+    let leads_back = |part| {
+        matches!(part, Part::RequirementUpper(_) | Part::LinkLower(_) | Part::DelayMin(_) | Part::Join(_))
+    };
+    !conflict.members.iter().any(|share| leads_back(share.part))
+}
+
+/// What would settle a conflict, in lines.
+fn advice(
     conflict: &Conflict,
     network: &Network,
     origins: &Origins,
-    program: Span,
-) -> Diagnostic {
-    let name = network.name();
-    let message = format!("`{name}` cannot be executed in every case: these bounds do not go together");
-    let mut problem = Diagnostic::error(Code::NotControllable, program, message)
-        .primary("there is no way to execute this that works whatever happens");
-    let mut places: Vec<(Span, Vec<String>)> = Vec::new();
-    for share in &conflict.members {
-        let Some((span, text)) = say(share, network, origins) else { continue };
-        // That the parts are joined goes without saying where it is said what is joined.
-        if text == JOINED && places.iter().any(|(known, _)| *known == span) {
-            continue;
-        }
-        match places.iter_mut().find(|(known, _)| *known == span) {
-            Some((_, texts)) if !texts.contains(&text) => texts.push(text),
-            Some(_) => {}
-            None => places.push((span, vec![text])),
-        }
-    }
-    for (span, texts) in places {
-        problem = problem.label(span, texts.join("; "));
-    }
-    problem.help(advice(conflict, network, origins))
-}
-
-/// The sum, and what to change.
-fn advice(conflict: &Conflict, network: &Network, origins: &Origins) -> String {
-    let mut text = format!("The time they leave: {} < 0.", total(conflict));
+    enough: Option<&[(String, Option<Suggestion>)]>,
+    is_one_of_several: bool,
+) -> Vec<String> {
     let has = |wanted: &dyn Fn(Part) -> bool| conflict.members.iter().any(|share| wanted(share.part));
     let late = has(&|part| matches!(part, Part::DelayMax(_)));
     let joined = has(&|part| match part {
         Part::RequirementUpper(index) | Part::RequirementLower(index) => {
             let ends = network.requirements().get(index);
-            origins.requirements.get(index).is_some_and(|origin| origin.kind == OriginKind::Join)
+            origins.requirements.get(index).is_some_and(|origin| origin.kind.is_join())
                 && ends.is_some_and(|r| network.link_of(r.from).is_some() || network.link_of(r.to).is_some())
         }
         _ => false,
     });
     let side_by_side = has(&|part| {
         matches!(part, Part::Join(index)
-        if origins.requirements.get(index).is_some_and(|origin| origin.subject == PARALLEL))
+        if origins.requirements.get(index).is_some_and(|origin| origin.kind == OriginKind::SideBySide))
     });
     let bounded = has(&|part| {
         matches!(part, Part::RequirementUpper(index)
-        if origins.requirements.get(index).is_some_and(|origin| origin.kind != OriginKind::Join))
+        if origins.requirements.get(index).is_some_and(|origin| !origin.kind.is_join()))
     });
-    let amounts = amounts::enough_alone(conflict, network, origins);
-    let mut advice = Vec::new();
-    if bounded && amounts.is_none() {
-        advice.push("a longer upper bound");
+    let mut other = Vec::new();
+    if bounded && enough.is_none() {
+        other.push("a longer upper bound");
     }
     if joined {
-        advice.push("slack (`:slack t`) where an end that Nature decides has to meet another event");
+        other.push("slack (`:slack t`) where an end that Nature decides has to meet another event");
     }
     if side_by_side && !joined {
-        advice.push("slack (`:slack t`) in the `parallel`");
+        other.push("slack (`:slack t`) in the `parallel`");
     }
-    if amounts.is_none() && has(&|part| matches!(part, Part::LinkUpper(_) | Part::LinkLower(_))) {
-        advice.push("a narrower contingent duration");
+    if enough.is_none() && has(&|part| matches!(part, Part::LinkUpper(_) | Part::LinkLower(_))) {
+        other.push("a narrower contingent duration");
     }
-    if late && amounts.is_none() {
-        advice.push("news that comes sooner");
+    if late && enough.is_none() {
+        other.push("news that comes sooner");
     }
-    match amounts.as_deref() {
-        Some([]) => text.push_str(NOT_ALONE),
-        Some([one]) => text.push_str(&format!(" This alone is enough: {one}.")),
-        Some(several) => text.push_str(&format!(" Each of these alone is enough: {}.", several.join("; "))),
+    let mut lines = Vec::new();
+    let settles = if is_one_of_several { "settles this conflict" } else { "is enough" };
+    match enough {
+        Some([]) if is_circle(conflict) => lines.extend(wrapped("", CIRCLE)),
+        Some([]) => lines.extend(wrapped("", NOT_ALONE)),
+        Some([(one, _)]) => lines.extend(wrapped("", &format!("This alone {settles}: {one}."))),
+        Some(several) => {
+            lines.push(format!("Each of these alone {settles}:"));
+            several.iter().for_each(|(one, _)| lines.extend(wrapped("- ", one)));
+        }
         None => {}
     }
-    let takes = match amounts.as_deref() {
-        Some([_, ..]) => "Or it takes",
-        _ => "It would take",
-    };
-    let advice = match advice.split_last() {
-        Some((last, rest)) if !rest.is_empty() => {
-            format!(" {takes} {} or {last}{AFTERWARDS}", rest.join(", "))
-        }
-        Some((last, _)) => format!(" {takes} {last}{AFTERWARDS}"),
-        None => String::new(),
-    };
-    text.push_str(&advice);
-    if conflict.conservative {
-        text.push_str(
-            " This \"no\" rests on a chain of activities of which the first is heard late; a cleverer use of that news \
-             might still find a way.",
-        );
+    let takes = if enough.is_some_and(|enough| !enough.is_empty()) { "Or it takes" } else { "It would take" };
+    if let Some((last, rest)) = other.split_last() {
+        let list = if rest.is_empty() { last.to_string() } else { format!("{} or {last}", rest.join(", ")) };
+        lines.extend(wrapped("", &format!("{takes} {list}.")));
     }
-    text
+    lines
 }
 
 /// The amounts as a sum with its result: `20 - 10 - 15 = -5`.
@@ -140,16 +249,24 @@ pub(crate) fn sum(members: &[Share]) -> String {
 }
 
 /// What one part of the conflict says, and where. `None` for what a user need not know.
-pub(crate) fn say(share: &Share, network: &Network, origins: &Origins) -> Option<(Span, String)> {
+pub(crate) fn say(
+    share: &Share,
+    network: &Network,
+    origins: &Origins,
+    sources: &[Source],
+    theory: bool,
+) -> Option<(Span, String)> {
     if share.times == 0 && !matches!(share.part, Part::Join(_)) {
         return None;
     }
     let amount = match share.amount {
-        amount if amount > Duration::ZERO => format!(": +{amount}"),
-        amount if amount < Duration::ZERO => format!(": {amount}"),
+        amount if theory && amount > Duration::ZERO => format!(": +{amount}"),
+        amount if theory && amount < Duration::ZERO => format!(": {amount}"),
         _ => String::new(),
     };
     let times = if share.times > 1 { format!(" ({} times)", share.times) } else { String::new() };
+    let written =
+        |value: Duration, origin: &Origin, side: usize| amount_in(value, origin.places[side], sources);
     let requirement =
         |index: usize| Some((network.requirements().get(index)?, origins.requirements.get(index)?));
     let contingent =
@@ -157,7 +274,7 @@ pub(crate) fn say(share: &Share, network: &Network, origins: &Origins) -> Option
     let (span, text) = match share.part {
         Part::RequirementUpper(index) => {
             let (requirement, origin) = requirement(index)?;
-            (place(origin, 1), upper(origin, requirement.upper.finite()?))
+            (place(origin, 1), limit(origin, "at most", &written(requirement.upper.finite()?, origin, 1)))
         }
         Part::RequirementLower(index) => {
             let (requirement, origin) = requirement(index)?;
@@ -166,28 +283,34 @@ pub(crate) fn say(share: &Share, network: &Network, origins: &Origins) -> Option
             if origin.kind == OriginKind::Order && !by_nature {
                 return None;
             }
-            (place(origin, 0), lower(origin, requirement.lower.finite()?))
+            (place(origin, 0), limit(origin, "at least", &written(requirement.lower.finite()?, origin, 0)))
         }
         Part::LinkLower(index) => {
             let (link, origin) = contingent(index)?;
-            (origin.places[0], format!("Nature may take only {} s for {}", link.lower, origin.subject))
+            (
+                origin.places[0],
+                format!("Nature may take only {} {}", written(link.lower, origin, 0), origin.about()),
+            )
         }
         Part::LinkUpper(index) => {
             let (link, origin) = contingent(index)?;
-            (origin.places[1], format!("Nature may take up to {} s for {}", link.upper, origin.subject))
+            (
+                origin.places[1],
+                format!("Nature may take up to {} {}", written(link.upper, origin, 1), origin.about()),
+            )
         }
         Part::DelayMin(index) => {
             let (link, origin) = contingent(index)?;
             (
                 origin.places[2],
-                format!("the news of the end of {} may be only {} s late", origin.subject, link.delay.min),
+                format!("the news of {} may be only {} late", origin.end, written(link.delay.min, origin, 2)),
             )
         }
         Part::DelayMax(index) => {
             let (link, origin) = contingent(index)?;
             let text = match link.delay.max.finite() {
-                Some(max) => format!("the news of the end of {} may be {max} s late", origin.subject),
-                None => format!("the end of {} may never be heard", origin.subject),
+                Some(max) => format!("the news of {} may be {} late", origin.end, written(max, origin, 3)),
+                None => format!("{} may never be heard", origin.end),
             };
             (origin.places[3], text)
         }
@@ -196,13 +319,12 @@ pub(crate) fn say(share: &Share, network: &Network, origins: &Origins) -> Option
             let (requirement, origin) = requirement(index)?;
             let by_nature =
                 network.link_of(requirement.from).is_some() || network.link_of(requirement.to).is_some();
-            match (origin.subject == PARALLEL, by_nature) {
-                (true, true) => (origin.span, origin.text.clone()),
-                (true, false) => (origin.span, JOINED.to_string()),
-                (false, _) if origin.text.ends_with(EMPTY) => {
-                    (origin.span, format!("joined here: {}", origin.text))
-                }
-                (false, _) => return None,
+            match origin.kind {
+                OriginKind::SideBySide if by_nature => (origin.span, origin.text.clone()),
+                OriginKind::SideBySide => (origin.span, JOINED.to_string()),
+                OriginKind::Empty => (origin.span, format!("joined here: {}", origin.text)),
+                OriginKind::Between | OriginKind::Requirement => (origin.span, origin.text.clone()),
+                _ => return None,
             }
         }
         Part::AfterOrigin => return None,
@@ -211,30 +333,18 @@ pub(crate) fn say(share: &Share, network: &Network, origins: &Origins) -> Option
 }
 
 fn place(origin: &Origin, which: usize) -> Span {
-    match origin.kind {
-        OriginKind::Join | OriginKind::Order => origin.span,
-        _ => origin.places[which],
-    }
+    if origin.kind.is_amount() { origin.places[which] } else { origin.span }
 }
 
-fn upper(origin: &Origin, bound: Duration) -> String {
+fn limit(origin: &Origin, word: &str, bound: &str) -> String {
     match origin.kind {
-        OriginKind::Constraint => format!("at most {bound} s from start to end of this"),
-        OriginKind::Between => format!("at most {bound} s {}", origin.subject),
-        OriginKind::Duration | OriginKind::Contingent => {
-            format!("{} takes at most {bound} s", origin.subject)
+        OriginKind::Constraint => format!("{word} {bound} from start to end of this"),
+        OriginKind::Between | OriginKind::Requirement | OriginKind::Link => {
+            format!("{word} {bound} {}", origin.subject)
         }
-        OriginKind::Join | OriginKind::Order => origin.text.clone(),
-    }
-}
-
-fn lower(origin: &Origin, bound: Duration) -> String {
-    match origin.kind {
-        OriginKind::Constraint => format!("at least {bound} s from start to end of this"),
-        OriginKind::Between => format!("at least {bound} s {}", origin.subject),
-        OriginKind::Duration | OriginKind::Contingent => {
-            format!("{} takes at least {bound} s", origin.subject)
+        OriginKind::Duration | OriginKind::Contingent => format!("{} takes {word} {bound}", origin.subject),
+        OriginKind::Join | OriginKind::SideBySide | OriginKind::Empty | OriginKind::Order => {
+            origin.text.clone()
         }
-        OriginKind::Join | OriginKind::Order => origin.text.clone(),
     }
 }

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use kirk_network::{Bound, ContingentLink, Delay, Duration, Event, EventId, Name, Network, Requirement};
 
 use crate::episode::{Constraint, Episode, EventOf, Interval, Kind};
+use crate::origins::{Origin, OriginKind, Origins};
 use crate::source::Span;
 
 /// What a program is compiled to.
@@ -17,50 +18,6 @@ pub struct Lowered {
     /// The name of the program to start from, where it is defined.
     pub entry: Span,
 }
-
-/// Where the constraints of a network come from.
-#[derive(Clone, Debug, Default)]
-pub struct Origins {
-    /// For each requirement of the network.
-    pub requirements: Vec<Origin>,
-    /// For each contingent link of the network.
-    pub contingents: Vec<Origin>,
-}
-
-/// Where a constraint comes from.
-#[derive(Clone, Debug)]
-pub struct Origin {
-    /// The form that says so.
-    pub span: Span,
-    /// What it says, as part of a sentence.
-    pub text: String,
-    /// What kind of constraint it is.
-    pub kind: OriginKind,
-    /// Whose start and end it is about: `shower`, "the sequence".
-    pub subject: String,
-    /// Where the lower and the upper bound are written, and the shortest and the longest delay.
-    pub places: [Span; 4],
-}
-
-/// The kinds of constraints a program gives rise to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum OriginKind {
-    /// How long an activity takes, as we decide.
-    Duration,
-    /// How long an activity takes, as Nature decides.
-    Contingent,
-    /// `with-temporal-constraint`.
-    Constraint,
-    /// Two events at the same time.
-    Join,
-    /// Two events one after the other.
-    Order,
-    /// `between`.
-    Between,
-}
-
-/// What is said of a form without parts.
-pub(crate) const EMPTY: &str = "is empty and takes no time";
 
 /// Builds the network. `None` only if the tree is not what `expand` makes.
 pub(crate) fn lower(root: &Episode) -> Option<Lowered> {
@@ -113,7 +70,7 @@ impl Lowering {
                         )
                     } else {
                         (
-                            OriginKind::Join,
+                            OriginKind::SideBySide,
                             format!("{inner} starts together with the others here (no slack)"),
                             format!("{inner} ends together with the others here (no slack)"),
                         )
@@ -148,7 +105,8 @@ impl Lowering {
             }
         }
         if episode.parts.is_empty() && !matches!(episode.kind, Kind::Primitive | Kind::Delay) {
-            self.link(ends.0, ends.1, OriginKind::Join, episode, format!("{subject} {EMPTY}"));
+            let text = format!("{subject} is empty and takes no time");
+            self.link(ends.0, ends.1, OriginKind::Empty, episode, text);
         }
         ends
     }
@@ -165,16 +123,27 @@ impl Lowering {
         let find = |event: &EventOf| {
             let (episode, (start, end)) = events.get(event.episode.as_str())?;
             let words = format!("the {} of {}", if event.end { "end" } else { "start" }, called(episode));
-            Some((if event.end { *end } else { *start }, words))
+            Some((if event.end { *end } else { *start }, words, names_of(episode)))
         };
         for Constraint { from, to, interval } in &root.constraints {
-            let (Some((from, before)), Some((to, after))) = (find(from), find(to)) else { continue };
+            let (Some((from, before, mut names)), Some((to, after, others))) = (find(from), find(to)) else {
+                continue;
+            };
+            names.extend(others);
             let Interval { lower, upper, lower_span, upper_span, span } = *interval;
             self.requirements.push(Requirement { from, to, lower: Bound::Finite(lower), upper });
             let subject = format!("from {before} to {after}");
             let text = format!("{} {subject}", range(interval));
             let places = [lower_span, upper_span, span, span];
-            self.origins.requirements.push(Origin { span, text, kind: OriginKind::Between, subject, places });
+            self.origins.requirements.push(Origin {
+                span,
+                text,
+                kind: OriginKind::Between,
+                subject,
+                end: after,
+                names,
+                places,
+            });
         }
     }
 
@@ -188,10 +157,11 @@ impl Lowering {
 
     fn link(&mut self, from: EventId, to: EventId, kind: OriginKind, episode: &Episode, text: String) {
         let zero = Bound::Finite(Duration::ZERO);
-        let upper = if kind == OriginKind::Join { zero } else { Bound::Infinite };
+        let upper = if kind.is_join() { zero } else { Bound::Infinite };
         self.requirements.push(Requirement { from, to, lower: zero, upper });
-        let (span, subject) = (episode.span, subject(episode));
-        self.origins.requirements.push(Origin { span, text, kind, subject, places: [span; 4] });
+        let (span, subject, end) = (episode.span, subject(episode), end_of(episode));
+        let names = names_of(episode);
+        self.origins.requirements.push(Origin { span, text, kind, subject, end, names, places: [span; 4] });
     }
 
     fn duration(&mut self, episode: &Episode, interval: &Interval, (from, to): Ends) {
@@ -213,7 +183,16 @@ impl Lowering {
                     lower: Bound::Finite(interval.lower),
                     upper: bound,
                 });
-                self.origins.requirements.push(Origin { span: interval.span, text, kind, subject, places });
+                let (end, names) = (end_of(episode), names_of(episode));
+                self.origins.requirements.push(Origin {
+                    span: interval.span,
+                    text,
+                    kind,
+                    subject,
+                    end,
+                    names,
+                    places,
+                });
                 return;
             }
         };
@@ -231,6 +210,8 @@ impl Lowering {
             text,
             kind: OriginKind::Contingent,
             subject,
+            end: end_of(episode),
+            names: names_of(episode),
             places,
         });
     }
@@ -275,6 +256,20 @@ fn subject(episode: &Episode) -> String {
         true => format!("this `{}`", episode.kind.word()),
         false => format!("`{}`", episode.name),
     }
+}
+
+/// What a user may call an episode: by its name, that of its program, a label, or the word of its form.
+fn names_of(episode: &Episode) -> Vec<String> {
+    let own = match episode.internal {
+        true => vec![episode.kind.word().to_string()],
+        false => vec![episode.name.clone(), episode.name.split('#').next().unwrap_or_default().to_string()],
+    };
+    own.into_iter().chain(episode.labels.iter().cloned()).collect()
+}
+
+/// What the end of an episode is called in a sentence.
+fn end_of(episode: &Episode) -> String {
+    format!("the end of {}", subject(episode))
 }
 
 /// An episode in a sentence about the one around it.

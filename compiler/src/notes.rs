@@ -15,7 +15,8 @@ use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::episode::{Episode, Kind};
 use crate::form::clip;
-use crate::lower::{Lowered, Origins, events_of};
+use crate::lower::{Lowered, events_of};
+use crate::origins::Origins;
 use crate::source::Span;
 
 /// All notes on a program that was unfolded and lowered.

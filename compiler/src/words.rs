@@ -117,6 +117,11 @@ pub const UNITS: [(&str, i64); 5] = [
     ("days", 86_400_000_000),
 ];
 
+/// The unit of this name, in the plural or in the singular.
+pub(crate) fn unit(word: &str) -> Option<(&'static str, i64)> {
+    UNITS.into_iter().find(|(name, _)| *name == word || name.strip_suffix('s') == Some(word))
+}
+
 /// The word of this name, in any case.
 pub fn word(name: &str) -> Option<&'static Word> {
     WORDS.iter().find(|word| word.name.eq_ignore_ascii_case(name))

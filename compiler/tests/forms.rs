@@ -3,7 +3,7 @@
 
 mod common;
 
-use kirk_compiler::{Severity, explain_conflict, to_sexpr};
+use kirk_compiler::{Explain, Severity, Source, to_sexpr};
 
 #[test]
 fn every_form_is_compiled_to_what_it_means() {
@@ -13,11 +13,11 @@ fn every_form_is_compiled_to_what_it_means() {
         let compiled = common::compile_with(&text, &common::options_in(&text));
         let said = common::diagnostics(&text, &compiled.diagnostics);
         assert!(compiled.diagnostics.iter().all(|d| d.severity != Severity::Error), "{name}:\n{said}");
-        let lowered = compiled.lowered.expect("a network");
+        let plan = compiled.lowered.expect("a network");
         let result = format!(
             "{text}\n--- ast\n{}\n--- network\n{}--- diagnostics\n{said}",
             to_sexpr(&compiled.ast).unwrap(),
-            common::network(&lowered),
+            common::network(&plan),
         );
         insta::with_settings!({prepend_module_to_snapshot => false, snapshot_path => "snapshots/good", omit_expression => true}, {
             insta::assert_snapshot!(name, result);
@@ -37,12 +37,12 @@ fn the_antennas_have_every_constraint_of_the_figure_for_any_number_of_rovers() {
             .replace("+rovers+ 8)", &format!("+rovers+ {rovers})"))
             .replace("+antennas+ 2)", &format!("+antennas+ {antennas})"));
         let compiled = common::compile(&text);
-        let lowered = compiled
+        let plan = compiled
             .lowered
             .unwrap_or_else(|| panic!("{}", common::diagnostics(&text, &compiled.diagnostics)));
         let rounds = rovers * antennas;
-        assert_eq!(lowered.network.contingents().len(), 2 * rounds);
-        let across: Vec<&str> = (lowered.origins.requirements.iter())
+        assert_eq!(plan.network.contingents().len(), 2 * rounds);
+        let across: Vec<&str> = (plan.origins.requirements.iter())
             .filter(|origin| origin.kind == kirk_compiler::OriginKind::Between)
             .map(|origin| origin.subject.as_str())
             .collect();
@@ -66,12 +66,9 @@ fn a_conflict_shows_what_between_says() {
   (between (start out) (start back) (simple-temporal :upper-bound 24)))
 ";
     let compiled = common::compile(text);
-    let lowered = compiled.lowered.expect("a network");
-    let Ok(kirk_network::Verdict::Uncontrollable(conflict)) = kirk_network::check(&lowered.network) else {
-        panic!("this can be executed")
-    };
-    let problem = explain_conflict(&conflict, &lowered.network, &lowered.origins, lowered.entry);
-    insta::assert_snapshot!(common::diagnostics(text, &[problem]));
+    let plan = compiled.lowered.expect("a network");
+    let problems = Explain::of(&plan, &[Source::new("test.rmpl", text)]).all().unwrap();
+    insta::assert_snapshot!(common::diagnostics(text, &problems));
 }
 
 #[test]

@@ -7,7 +7,7 @@
 
 mod common;
 
-use kirk_compiler::{Compilation, Options, Severity, Source, compile, explain_conflict, to_sexpr};
+use kirk_compiler::{Compilation, Explain, Options, Severity, Source, compile, to_sexpr};
 use proptest::prelude::*;
 
 /// Compiles and checks what must hold for every text.
@@ -120,8 +120,8 @@ fn what_may_be_nested_is_compiled_and_written_on_a_small_stack() {
             );
             let compiled = result(&text);
             let said = common::diagnostics(&text, &compiled.diagnostics);
-            let lowered = compiled.lowered.unwrap_or_else(|| panic!("{open}: {said}"));
-            assert_eq!(lowered.network.events().len(), 2 * (episodes * depth + 2));
+            let plan = compiled.lowered.unwrap_or_else(|| panic!("{open}: {said}"));
+            assert_eq!(plan.network.events().len(), 2 * (episodes * depth + 2));
             assert!(to_sexpr(&compiled.ast).unwrap().len() > depth);
             assert!(to_sexpr(&compiled.episodes).unwrap().len() > episodes * depth);
         }
@@ -200,9 +200,8 @@ fn lisp_spellings_mean_the_same() {
 \t(DECLARE (Primitive) (Duration (SIMPLE :Lower-Bound 9d1 :UPPER-BOUND (minute 2.)) :contingent nil)))\r
 (rmpl/lang:define-control-program MAIN () (cl-user::a))";
     let events = |text| {
-        let lowered = result(text).lowered.expect("a network");
-        lowered
-            .network
+        let plan = result(text).lowered.expect("a network");
+        plan.network
             .requirements()
             .iter()
             .map(|r| (r.lower, r.upper))
@@ -230,10 +229,9 @@ proptest! {
         let text: String = words.iter().map(|word| WORDS[*word]).collect::<Vec<_>>().join(" ");
         let compiled = result(&text);
         result(&format!("(define-control-program main () {text})"));
-        if let Some(lowered) = compiled.lowered
-            && let Ok(kirk_network::Verdict::Uncontrollable(conflict)) = kirk_network::check(&lowered.network)
+        if let Some(plan) = compiled.lowered
         {
-            explain_conflict(&conflict, &lowered.network, &lowered.origins, lowered.entry);
+            let _ = Explain::of(&plan, &[Source::new("test.rmpl", text)]).all();
         }
     }
 

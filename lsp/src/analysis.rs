@@ -62,6 +62,8 @@ pub struct Unjudged {
     pub model: Model,
     /// The programs to start from; none if there are errors.
     pub roots: Vec<usize>,
+    /// The texts it comes from.
+    pub sources: Vec<Source>,
 }
 
 impl Analysis {
@@ -151,9 +153,10 @@ pub fn analyse_among(text: String, companions: &Companions) -> (Analysis, Unjudg
     let lines = Lines::new(&sources[0].text);
     let others = sources[1..].iter().map(|source| Lines::new(&source.text)).collect();
     let (places, order) = (places.clone(), order.clone());
+    let unjudged = Unjudged { model, roots, sources: sources.clone() };
     let analysis =
         Analysis { sources, lines, others, forms, program, symbols, diagnostics, broken, places, order };
-    (analysis, Unjudged { model, roots })
+    (analysis, unjudged)
 }
 
 /// The first error of each other file, where that is named: nothing is judged before it is put right.

@@ -99,7 +99,7 @@ pub fn lenses(view: &View) -> Vec<Lens> {
 fn verdict(mission: &Mission) -> String {
     let network = &mission.lowered.network;
     match &mission.verdict {
-        Judgement::Uncontrollable(_) => "not controllable: some bounds do not go together".to_string(),
+        Judgement::Uncontrollable => "not controllable: some bounds do not go together".to_string(),
         Judgement::TooLarge => "no verdict: the durations add up to too much".to_string(),
         Judgement::Controllable => {
             let end = mission.occurrences.first().and_then(|root| mission.window(root.end));

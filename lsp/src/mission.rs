@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use kirk_compiler::episode::{Episode, Kind};
 use kirk_compiler::problem::Problems;
-use kirk_compiler::{Code, Diagnostic, Lowered, Span, Unfolded, events_of, explain_conflict, unfold};
+use kirk_compiler::{Code, Diagnostic, Explain, Lowered, Source, Span, Unfolded, events_of, unfold};
+use kirk_network::EventId;
 use kirk_network::windows::{Window, windows};
-use kirk_network::{Conflict, EventId, Verdict, check};
 
 use crate::analysis::Unjudged;
 
@@ -47,39 +47,41 @@ pub struct Occurrence {
 pub enum Judgement {
     /// It can be executed whatever happens.
     Controllable,
-    /// It cannot, and this is why.
-    Uncontrollable(Conflict),
+    /// It cannot; the diagnostic says why.
+    Uncontrollable,
     /// Its durations add up to too much.
     TooLarge,
 }
 
 /// Unfolds and judges every program a mission may start from, and says what there is to say about them.
 pub fn judge(unjudged: Unjudged) -> (Vec<Mission>, Vec<Diagnostic>) {
-    let Unjudged { mut model, roots } = unjudged;
+    let Unjudged { mut model, roots, sources } = unjudged;
     let mut missions = Vec::new();
     let mut problems = Problems::default();
+    // Several conflicts are told at one place.
+    let mut verdicts = Vec::new();
     for root in roots {
         model.entry = Some(root);
         let Some(Unfolded { episodes, lowered: Some(lowered) }) = unfold(&model, &mut problems) else {
             continue;
         };
-        let (mission, verdict) = mission(&episodes, lowered);
-        problems.extend(verdict);
+        let (mission, verdict) = mission(&episodes, lowered, &sources);
+        verdicts.extend(verdict);
         missions.push(mission);
     }
-    (missions, problems.into_sorted())
+    let mut told = problems.into_sorted();
+    told.append(&mut verdicts);
+    told.sort_by_key(|diagnostic| diagnostic.span);
+    (missions, told)
 }
 
-fn mission(root: &Episode, lowered: Lowered) -> (Mission, Option<Diagnostic>) {
-    let (verdict, diagnostic) = match check(&lowered.network) {
-        Ok(Verdict::Controllable) => (Judgement::Controllable, None),
-        Ok(Verdict::Uncontrollable(conflict)) => {
-            let diagnostic = explain_conflict(&conflict, &lowered.network, &lowered.origins, lowered.entry);
-            (Judgement::Uncontrollable(conflict), Some(diagnostic))
-        }
+fn mission(root: &Episode, lowered: Lowered, sources: &[Source]) -> (Mission, Vec<Diagnostic>) {
+    let (verdict, diagnostics) = match Explain::of(&lowered, sources).all() {
+        Ok(told) if told.is_empty() => (Judgement::Controllable, told),
+        Ok(told) => (Judgement::Uncontrollable, told),
         Err(error) => {
             let diagnostic = Diagnostic::error(Code::NumbersTooLarge, lowered.entry, error.to_string());
-            (Judgement::TooLarge, Some(diagnostic))
+            (Judgement::TooLarge, vec![diagnostic])
         }
     };
     let mut at: BTreeMap<Span, Vec<usize>> = BTreeMap::new();
@@ -91,7 +93,7 @@ fn mission(root: &Episode, lowered: Lowered) -> (Mission, Option<Diagnostic>) {
     let windows = windows(&lowered.network);
     let mission =
         Mission { program: root.name.clone(), name: root.span, lowered, occurrences, at, windows, verdict };
-    (mission, diagnostic)
+    (mission, diagnostics)
 }
 
 impl Mission {

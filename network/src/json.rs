@@ -3,6 +3,7 @@
 mod element;
 mod fields;
 mod parse;
+mod place;
 mod reader;
 mod writer;
 
@@ -13,6 +14,7 @@ use crate::source_map::SourceMap;
 use crate::time::Duration;
 
 pub use parse::parse;
+pub use place::amount_in;
 pub use writer::{write, write_dispatchable};
 
 /// The `format` of the files read and written here.

@@ -62,6 +62,7 @@ pub mod assume;
 mod blame;
 pub mod check;
 pub mod conflict;
+pub mod conflicts;
 pub mod controllability;
 pub mod dispatchable;
 pub mod dot;

@@ -7,9 +7,11 @@
 mod oracle;
 
 use std::cell::Cell;
+use std::collections::BTreeSet;
 use std::time::Instant;
 
 use kirk_network::check::conflict;
+use kirk_network::conflicts::{conflicts, without};
 use kirk_network::controllability::{is_controllable, negative_cycle};
 use kirk_network::merge::merge;
 use kirk_network::precedence::Precedence;
@@ -191,6 +193,29 @@ fn a_conflict_adds_up_is_uncontrollable_alone_and_minimal() {
         });
         adds_up && alone && minimal && conflict(&merged).unwrap() == Some(found)
     });
+}
+
+#[test]
+fn each_of_all_conflicts_is_one_alone_and_without_their_bounds_none_is_left() {
+    let shapes =
+        [Shape::tiny_delayed(), Shape::tiny_delayed().chained(), Shape::medium(), Shape::medium().chained()];
+    let several = Cell::new(0);
+    holds(4000, &shapes, |network, _| {
+        let merged = merge(network).network;
+        let found = conflicts(&merged, 1000).unwrap();
+        let possible = |network: &Network| conflict(network).unwrap().is_none();
+        several.set(several.get() + usize::from(found.len() > 1));
+        let alone = found.iter().all(|conflict| !possible(&only(&merged, conflict, None)));
+        let rest = found.iter().try_fold(merged.clone(), |network, conflict| without(&network, conflict));
+        let bounds: Vec<Part> =
+            found.iter().flat_map(|conflict| &conflict.members).map(|it| it.part).collect();
+        let is_free =
+            |part: &&Part| matches!(part, Part::RequirementUpper(_)) && part.bound(&merged) != Duration::ZERO;
+        let disjoint = bounds.iter().filter(is_free).count()
+            == bounds.iter().filter(is_free).collect::<BTreeSet<_>>().len();
+        alone && disjoint && found.is_empty() == possible(&merged) && rest.is_none_or(|rest| possible(&rest))
+    });
+    assert!(several.get() > 20, "{}", several.get());
 }
 
 #[test]

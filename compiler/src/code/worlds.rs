@@ -98,14 +98,16 @@ not checked.",
 
 pub(super) const NOT_CONTROLLABLE: Page = Page {
     meaning: "There is no strategy that keeps every constraint whatever Nature does within its bounds. The message names the
-bounds that do not go together and adds them up: each contributes time (`+`) or needs it (`-`), and the
-sum is below zero: so much is missing between them. At least one of them has to change: a longer deadline, a
-shorter activity, a narrower contingent duration, news that comes sooner, or slack where two events are forced
-together. This is one conflict, not necessarily the only or the worst one, so more than its sum may be
-needed. The help says what is enough: each amount it names, changed alone to the value it gives, makes the
-mission controllable, and a microsecond less of a change does not. What is ours and the news come first;
-Nature's durations are named only where nothing else is enough. If no amount alone will do, it says so. A schedule for the average case may exist all the same;
-kirk promises more than that.",
+bounds that do not go together and tells, step by step, what is needed and who decides it, and what is there. At
+least one of them has to change: a longer deadline, a shorter activity, a narrower contingent duration, news that
+comes sooner, or slack where two events are forced together. Conflicts that have no bound of ours in common are
+told each by itself, up to ten of them. What is needed and what is there is one way round; more than the
+difference may be missing, or less. The help says what is enough: each amount it names, changed alone to
+the value it gives, makes the mission controllable (with several conflicts: settles this one), and a microsecond
+less of a change does not. What is ours and the news come first; Nature's durations are named only where nothing
+else is enough. If no amount alone will do, it says so, and `kirk repair` finds what several changes, slack or an
+order less can do. With `--theory` the amounts are added up with their signs: the sum round the cycle is below
+zero. A schedule for the average case may exist all the same; kirk promises more than that.",
     wrong: "(define-control-program drive ()
   (declare (primitive) (duration (simple :lower-bound 15 :upper-bound 20) :contingent t)))
 (define-control-program main ()

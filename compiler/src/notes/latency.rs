@@ -10,7 +10,8 @@ use crate::diagnostic::Diagnostic;
 use crate::episode::{Episode, Kind};
 use crate::explain::{say, sum};
 use crate::form::clip;
-use crate::lower::{Origins, called, events_of};
+use crate::lower::{called, events_of};
+use crate::origins::Origins;
 use crate::source::Span;
 
 /// Networks of more events than this are not looked at: it takes as long as the verdict, and nobody wrote them by hand.
@@ -56,7 +57,7 @@ fn note(
         .primary("the first moment at which this can start is also the last");
     let mut places: Vec<(Span, String)> = moment.into_iter().collect();
     for share in shares.iter().filter(|share| share.amount != Duration::ZERO) {
-        places.extend(say(share, network, origins).filter(|place| !places.contains(place)));
+        places.extend(say(share, network, origins, &[], true).filter(|place| !places.contains(place)));
     }
     for (span, text) in places {
         note = note.label(span, text);

@@ -7,7 +7,7 @@ use crate::ast::{Amount, AmountKind};
 use crate::calculate::Operator;
 use crate::form::{Form, FormKind, Symbol};
 use crate::problem::Problems;
-use crate::words::UNITS;
+use crate::words::unit;
 
 /// Reads a duration or another number. `what` names it in messages.
 pub(super) fn amount(form: &Form, what: &str, problems: &mut Problems) -> Amount {
@@ -72,11 +72,6 @@ pub(super) fn is_name(symbol: &Symbol) -> bool {
         Some(package) => !(digit(package) && digit(name)),
         None => !digit(name.trim_start_matches('.')) && !name.contains(".."),
     }
-}
-
-/// The unit of this name, in the plural or in the singular.
-pub(super) fn unit(word: &str) -> Option<(&'static str, i64)> {
-    UNITS.into_iter().find(|(name, _)| *name == word || name.strip_suffix('s') == Some(word))
 }
 
 /// The number of microseconds of a number as written, in units of `unit` microseconds.

@@ -7,7 +7,7 @@ use serde_json::value::RawValue;
 use super::ReadProblem;
 use super::element::{Element, Wrong, words};
 
-/// Reads JSON text. What serde_json refuses is read once more as an [`Element`], which knows more of what is wrong; a
+/// Reads JSON text. What serde_json refuses is read once more as an `Element`, which knows more of what is wrong; a
 /// text that is no JSON is looked at where serde_json stopped.
 pub fn parse<'a, T: Deserialize<'a>>(text: &'a str) -> Result<T, ReadProblem> {
     serde_json::from_str(text).map_err(|error| match serde_json::from_str::<&RawValue>(text) {

@@ -8,9 +8,10 @@ use crate::code::Code;
 use crate::diagnostic::{Diagnostic, Edit};
 use crate::form::{Form, FormKind, clip};
 use crate::nearest::nearest;
-use crate::parse::amount::{number, unit};
+use crate::parse::amount::number;
 use crate::source::Span;
 use crate::words::UNITS;
+use crate::words::unit;
 
 /// Something that is no number. `what` it should be is named in the message.
 pub(in crate::parse) fn no_number(form: &Form, what: &str) -> Diagnostic {

@@ -5,9 +5,10 @@ use crate::code::Code;
 use crate::diagnostic::{Diagnostic, Edit};
 use crate::form::{Form, FormKind, clip, write};
 use crate::nearest::nearest;
-use crate::parse::amount::{is_calculation, unit};
+use crate::parse::amount::is_calculation;
 use crate::problem::Problems;
 use crate::source::Span;
+use crate::words::unit;
 use crate::words::{Part, keyword};
 
 /// The values of the known keywords as far as they can be guessed; what is wrong is reported.

@@ -1,0 +1,315 @@
+//! `kirk repair`: what would make a mission controllable, each proposal proven of the edited source, and made if that is wanted.
+
+use std::fs;
+use std::io;
+
+use kirk_compiler::nearest::nearest;
+use kirk_compiler::repair::{Changed, Preference, Proposal, Proposals, Wishes, names, proposals};
+use kirk_compiler::{Edit, Source, Span, Text};
+use kirk_network::stnu::TooLarge;
+use kirk_network::{Bound, Duration, Verdict, check};
+use serde::Serialize;
+use similar::TextDiff;
+
+use crate::args::{Common, Prefer, RepairOf, TextOrJson};
+use crate::check::too_large;
+use crate::foreign::one_line;
+use crate::input::{Input, load_all, without_mark};
+use crate::json::line;
+use crate::output::{Status, complain, print, print_line};
+use crate::replace::replace;
+use crate::report::{Reporter, SpanJson};
+
+pub(crate) fn repair_of(arguments: &RepairOf, common: &Common) -> io::Result<Status> {
+    let mut input = load_all(&arguments.files, &arguments.selection);
+    let wishes = match wishes(arguments, &input) {
+        Ok(wishes) => wishes,
+        Err(wrong) => return refuse(&wrong),
+    };
+    let found = match (&input.network, input.origins()) {
+        (Some(network), Some(origins)) => proposals(network, origins, &input.sources, &wishes),
+        _ => {
+            Reporter::new(&input.sources).show(&input.diagnostics, common)?;
+            return Ok(Status::Wrong);
+        }
+    };
+    let found = match found {
+        Ok(found) => found.map(|found| proven(found, &input, arguments)),
+        Err(TooLarge) => {
+            input.diagnostics.push(too_large());
+            Reporter::new(&input.sources).show(&input.diagnostics, common)?;
+            return Ok(Status::Wrong);
+        }
+    };
+    if arguments.apply.is_some() || arguments.diff {
+        return edit(arguments, &input, found.as_ref());
+    }
+    let file = arguments.files.join(" ");
+    let reporter = Reporter::new(&input.sources);
+    match (arguments.format, &found) {
+        (TextOrJson::Json, _) => print(&line(&RepairJson::new(&file, found.as_ref(), &reporter))?)?,
+        (TextOrJson::Text, None) => {
+            let program = input.program(&arguments.selection);
+            print_line(&format!("{file}: `{program}` is controllable: there is nothing to repair"))?;
+        }
+        (TextOrJson::Text, Some(found)) => {
+            let program = input.program(&arguments.selection);
+            for text in lines(&file, &program, found, &reporter, arguments) {
+                print_line(&one_line(&text))?;
+            }
+        }
+    }
+    Ok(match found {
+        Some(found) if found.proposals.is_empty() => Status::No,
+        _ => Status::Yes,
+    })
+}
+
+fn refuse(wrong: &str) -> io::Result<Status> {
+    complain(wrong);
+    Ok(Status::Wrong)
+}
+
+/// What the command line wishes for, or what is wrong with that.
+fn wishes(arguments: &RepairOf, input: &Input) -> Result<Wishes, String> {
+    let known = |name: &str| -> Result<String, String> {
+        let all: Vec<&str> = input.origins().map(|origins| names(origins).collect()).unwrap_or_default();
+        if input.network.is_none() || all.iter().any(|known| known.eq_ignore_ascii_case(name)) {
+            return Ok(name.to_string());
+        }
+        let near = nearest(name, all).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+        Err(format!("nothing here is called `{name}`{near}"))
+    };
+    let weight = |option: &String| -> Result<(String, u64), String> {
+        let expected = || format!("`--weight {option}`: expected NAME=W, as in `--weight drive=3`");
+        let (name, weight) = option.rsplit_once('=').ok_or_else(expected)?;
+        let weight = Duration::parse_seconds(weight).map_err(|_| expected())?.as_micros();
+        let weight = u64::try_from(weight).ok().filter(|weight| *weight > 0).ok_or_else(|| {
+            format!("`--weight {option}`: a weight is more than 0; `--keep {name}` leaves it as it is")
+        })?;
+        Ok((known(name)?, weight))
+    };
+    Ok(Wishes {
+        nature: arguments.nature,
+        keep: arguments.keep.iter().map(|name| known(name)).collect::<Result<_, _>>()?,
+        prefer: arguments.prefer.map(|prefer| match prefer {
+            Prefer::News => Preference::News,
+            Prefer::Deadlines => Preference::Deadlines,
+            Prefer::Durations => Preference::Durations,
+        }),
+        weights: arguments.weight.iter().map(weight).collect::<Result<_, _>>()?,
+        limit: arguments.limit,
+    })
+}
+
+/// The proposals whose edits, read afresh, are controllable. What cannot be edited is proven of the network.
+fn proven(found: Proposals, input: &Input, arguments: &RepairOf) -> Proposals {
+    let is_proven = |proposal: &Proposal| {
+        let Some(sources) = edited(proposal, &input.sources) else { return true };
+        let after = input.with_sources(sources, &arguments.selection);
+        after.network.is_some_and(|network| check(&network) == Ok(Verdict::Controllable))
+    };
+    let (proposals, _): (Vec<Proposal>, Vec<Proposal>) = found.proposals.into_iter().partition(is_proven);
+    Proposals { proposals, ..found }
+}
+
+/// The sources with a proposal made; `None` if it is of what cannot be edited.
+fn edited(proposal: &Proposal, sources: &[Source]) -> Option<Vec<Source>> {
+    let mut edits: Vec<&Edit> = proposal.changes.iter().flat_map(|change| &change.edits).collect();
+    if edits.is_empty() || proposal.changes.iter().any(|change| change.edits.is_empty()) {
+        return None;
+    }
+    edits.sort_by_key(|edit| (edit.span.source, edit.span.start));
+    let mut sources = sources.to_vec();
+    for edit in edits.iter().rev() {
+        let Text::Plain(text) = &edit.text else { return None };
+        let range = edit.span.start as usize..edit.span.end as usize;
+        sources.get_mut(edit.span.source as usize)?.text.replace_range(range, text);
+    }
+    Some(sources)
+}
+
+/// Makes a proposal, or prints it as a patch.
+fn edit(arguments: &RepairOf, input: &Input, found: Option<&Proposals>) -> io::Result<Status> {
+    let Some(found) = found else {
+        return refuse("it is controllable: there is nothing to repair");
+    };
+    let number = arguments.apply.unwrap_or(1);
+    let Some(proposal) = number.checked_sub(1).and_then(|at| found.proposals.get(at)) else {
+        let there = match found.proposals.len() {
+            0 => "nothing was found that could be applied".to_string(),
+            1 => "there is only proposal 1".to_string(),
+            count => format!("there are proposals 1 to {count}"),
+        };
+        return refuse(&format!("there is no proposal {number}: {there}"));
+    };
+    let Some(sources) = edited(proposal, &input.sources) else {
+        return refuse(
+            "amounts of this format cannot be edited by kirk: change them where the proposal says",
+        );
+    };
+    let changed = input.sources.iter().zip(&sources).filter(|(before, after)| before.text != after.text);
+    if arguments.diff {
+        for (before, after) in changed {
+            print(&patch(before, after))?;
+        }
+        return Ok(Status::Yes);
+    }
+    for (before, after) in changed {
+        if let Err(why) = write(before, after) {
+            return refuse(&format!("cannot change `{}`, which is as it was: {why}", before.name));
+        }
+    }
+    for change in &proposal.changes {
+        print_line(&format!("changed: {}", change.title))?;
+    }
+    Ok(Status::Yes)
+}
+
+fn patch(before: &Source, after: &Source) -> String {
+    let named = |side: &str| match before.name.starts_with('/') {
+        true => before.name.clone(),
+        false => format!("{side}/{}", before.name),
+    };
+    TextDiff::from_lines(&before.text, &after.text)
+        .unified_diff()
+        .header(&named("a"), &named("b"))
+        .to_string()
+}
+
+/// Puts the new text in the place of the old one, if that is what is still there.
+fn write(before: &Source, after: &Source) -> Result<(), String> {
+    if before.name == "<stdin>" {
+        return Err("it came from standard input; `--diff` prints the change".to_string());
+    }
+    let there = fs::read_to_string(&before.name).map_err(|error| error.to_string())?;
+    let rest = without_mark(&there);
+    if rest != without_mark(&before.text) {
+        return Err("somebody has changed it meanwhile".to_string());
+    }
+    let mark = &there[..there.len() - rest.len()];
+    replace(&before.name, &format!("{mark}{}", without_mark(&after.text))).map_err(|error| error.to_string())
+}
+
+fn lines(
+    file: &str,
+    program: &str,
+    found: &Proposals,
+    reporter: &Reporter<'_>,
+    arguments: &RepairOf,
+) -> Vec<String> {
+    let mut lines = Vec::new();
+    if found.proposals.is_empty() {
+        lines.push(format!(
+            "{file}: `{program}` is not controllable, and no change of what may change makes it so"
+        ));
+        if !arguments.nature {
+            lines.push("With `--nature` the durations that Nature decides may change, too.".to_string());
+        }
+    } else {
+        lines.push(format!(
+            "{file}: `{program}` is not controllable; each of these makes it so, which is proven"
+        ));
+    }
+    for (number, proposal) in found.proposals.iter().enumerate() {
+        lines.push(String::new());
+        for (at, change) in proposal.changes.iter().enumerate() {
+            let lead = if at == 0 { format!("{:>3}  ", number + 1) } else { "     and ".to_string() };
+            let place = reporter.at(change.place).map_or(String::new(), |at| format!("  {at}"));
+            lines.push(format!("{lead}{}{place}", change.title));
+        }
+    }
+    if found.gave_up {
+        lines.extend([
+            String::new(),
+            "The search was given up before its end: there may be cheaper ones.".to_string(),
+        ]);
+    }
+    if found.proposals.iter().any(|proposal| proposal.changes.iter().all(|change| !change.edits.is_empty())) {
+        lines.extend([
+            String::new(),
+            format!("`kirk repair {file} --apply 1` makes the first of them, `--diff` prints it as a patch."),
+        ]);
+    }
+    lines
+}
+
+#[derive(Serialize)]
+struct RepairJson<'a> {
+    format: &'static str,
+    file: &'a str,
+    controllable: bool,
+    repairs: Vec<ProposalJson<'a>>,
+    not_alone: Vec<PlaceJson<'a>>,
+    gave_up: bool,
+}
+
+#[derive(Serialize)]
+struct ProposalJson<'a> {
+    /// The amounts of all changes, added up.
+    total: Duration,
+    changes: Vec<ChangedJson<'a>>,
+    proven: bool,
+}
+
+#[derive(Serialize)]
+struct ChangedJson<'a> {
+    what: &'a str,
+    title: &'a str,
+    #[serde(flatten)]
+    place: SpotJson<'a>,
+    from: Option<Duration>,
+    to: Option<Duration>,
+}
+
+#[derive(Serialize)]
+struct PlaceJson<'a> {
+    what: &'a str,
+    #[serde(flatten)]
+    place: SpotJson<'a>,
+}
+
+#[derive(Serialize)]
+struct SpotJson<'a> {
+    file: Option<&'a str>,
+    span: Option<SpanJson>,
+}
+
+impl<'a> RepairJson<'a> {
+    fn new(file: &'a str, found: Option<&'a Proposals>, reporter: &'a Reporter<'_>) -> RepairJson<'a> {
+        let spot = |span: Span| SpotJson {
+            file: reporter.span_json(span).map(|_| reporter.name(span)),
+            span: reporter.span_json(span),
+        };
+        let finite = |bound: Option<Bound>| bound.and_then(Bound::finite);
+        let changed = |change: &'a Changed| ChangedJson {
+            what: &change.what,
+            title: &change.title,
+            place: spot(change.place),
+            from: finite(change.amounts.map(|(from, _)| from)),
+            to: finite(change.amounts.map(|(_, to)| to)),
+        };
+        let by = |change: &Changed| {
+            let (from, to) = change.amounts?;
+            Some(to.finite()?.checked_sub(from.finite()?)?.abs())
+        };
+        let total = |proposal: &Proposal| {
+            let amounts = proposal.changes.iter().filter_map(by);
+            amounts.fold(Duration::ZERO, |sum, by| sum.saturating_add(by))
+        };
+        let repairs = found.iter().flat_map(|found| &found.proposals).map(|proposal| ProposalJson {
+            total: total(proposal),
+            changes: proposal.changes.iter().map(changed).collect(),
+            proven: true,
+        });
+        let not_alone = found.iter().flat_map(|found| &found.not_alone);
+        RepairJson {
+            format: "kirk-repair/1",
+            file,
+            controllable: found.is_none(),
+            repairs: repairs.collect(),
+            not_alone: not_alone.map(|(what, span)| PlaceJson { what, place: spot(*span) }).collect(),
+            gave_up: found.is_some_and(|found| found.gave_up),
+        }
+    }
+}

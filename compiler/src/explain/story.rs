@@ -1,0 +1,85 @@
+//! A conflict as a story: step by step what is needed, who decides it, and how much is there.
+
+use kirk_network::walk::{Step, walk};
+use kirk_network::{Conflict, Duration, Network, Part};
+
+use super::is_circle;
+use crate::origins::{Origin, Origins};
+use crate::repair::amount;
+use crate::source::Source;
+
+/// No line of a story is longer: with what a terminal shows before it, it fits 80 columns.
+const WIDTH: usize = 74;
+
+/// The story, in numbered lines; `None` if the walk would be too long to tell anything.
+pub(super) fn story(
+    conflict: &Conflict,
+    network: &Network,
+    origins: &Origins,
+    sources: &[Source],
+) -> Option<Vec<String>> {
+    let steps = walk(network, conflict)?;
+    let is_circle = is_circle(conflict);
+    let needed = sum(steps.iter().map(|step| step.needs).filter(|needs| *needs > Duration::ZERO));
+    let there = -sum(steps.iter().map(|step| step.needs).filter(|needs| *needs < Duration::ZERO));
+    let told = steps.iter().filter(|step| is_circle || step.needs != Duration::ZERO);
+    let texts: Vec<String> = told.filter_map(|step| say(step, origins, sources)).collect();
+    if texts.is_empty() {
+        return None;
+    }
+    let mut lines = vec![match is_circle {
+        true => "Each of these comes after the one before, and the first after the last:".to_string(),
+        false => "Step by step:".to_string(),
+    }];
+    for (number, text) in texts.iter().enumerate() {
+        lines.extend(wrapped(&format!("{:>2}. ", number + 1), text));
+    }
+    if !is_circle {
+        lines.push(format!("That needs {needed} s, and {there} s are there."));
+    }
+    Some(lines)
+}
+
+fn sum(amounts: impl Iterator<Item = Duration>) -> Duration {
+    amounts.fold(Duration::ZERO, |sum, amount| sum.checked_add(amount).unwrap_or(Duration::MAX))
+}
+
+/// One step; `None` for what goes without saying.
+fn say(step: &Step, origins: &Origins, sources: &[Source]) -> Option<String> {
+    let (origin, side) = origins.of(step.part)?;
+    let written = |needs: Duration| amount(needs.abs(), origin.places[side], sources);
+    let Origin { kind, text, end, .. } = origin;
+    Some(match step.part {
+        Part::LinkUpper(_) => format!("Nature may take {} {}", written(step.needs), origin.about()),
+        Part::LinkLower(_) => format!("but Nature may take only {} {}", written(step.needs), origin.about()),
+        Part::DelayMax(_) => format!("the news of {end} may take {}", written(step.needs)),
+        Part::DelayMin(_) => format!("but the news of {end} may take only {}", written(step.needs)),
+        _ if !kind.is_amount() => text.clone(),
+        _ if step.needs == Duration::ZERO => format!("the order {}", origin.about()),
+        Part::RequirementLower(_) if step.needs > Duration::ZERO => {
+            format!("you need at least {} {}", written(step.needs), origin.about())
+        }
+        Part::RequirementUpper(_) if step.needs > Duration::ZERO => {
+            format!("you need at least {} the other way than {}", written(step.needs), origin.about())
+        }
+        _ => format!("you allow at most {} {}", written(step.needs), origin.about()),
+    })
+}
+
+/// A text in lines that are not too long, those after the first indented below it.
+pub(super) fn wrapped(lead: &str, text: &str) -> Vec<String> {
+    let mut lines = vec![lead.to_string()];
+    for word in text.split(' ') {
+        let indent = lead.chars().count();
+        if let Some(last) = lines.last_mut() {
+            let length = last.chars().count();
+            if length > indent && length + 1 + word.chars().count() > WIDTH {
+                lines.push(format!("{:indent$}{word}", ""));
+            } else {
+                let blank = if length > indent { " " } else { "" };
+                last.push_str(&format!("{blank}{word}"));
+            }
+        }
+    }
+    lines
+}

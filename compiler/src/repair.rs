@@ -1,0 +1,322 @@
+//! What would make a mission controllable, as changes of its source.
+//!
+//! The bounds that somebody has written are what may be turned (`levers`); which of them, and how far, is found by
+//! [`kirk_network::repair`]; what that is in the source is an [`Edit`] (`edit`). Where no amount is enough, slack in a form whose
+//! parts have to meet, or an order less, is tried. What is proposed is proven of the network. That the edit says the same is for
+//! whoever can read the edited source to prove.
+
+mod edit;
+mod structure;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use kirk_network::conflicts::conflicts;
+use kirk_network::least::could_settle;
+use kirk_network::repair::{Allowed, Ended, Options, Repairs, repairs};
+use kirk_network::stnu::TooLarge;
+use kirk_network::vary::{Change, Knob};
+use kirk_network::{Bound, Duration, Network, Part};
+
+use crate::diagnostic::{Edit, Suggestion};
+use crate::origins::{Origin, OriginKind, Origins};
+use crate::source::{Source, Span};
+pub use structure::slack;
+
+/// What is wanted of a repair.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Wishes {
+    /// Nature's durations may change, too.
+    pub nature: bool,
+    /// What is to stay as it is, by its names.
+    pub keep: Vec<String>,
+    /// What is to change first.
+    pub prefer: Option<Preference>,
+    /// How many times as dear a change of something is as it would be, in millionths.
+    pub weights: Vec<(String, u64)>,
+    /// So many proposals at most.
+    pub limit: usize,
+}
+
+impl Default for Wishes {
+    /// What is ours may change, nothing rather than anything else, and there are five proposals at most.
+    fn default() -> Wishes {
+        Wishes { nature: false, keep: Vec::new(), prefer: None, weights: Vec::new(), limit: 5 }
+    }
+}
+
+/// What is rather changed than all else.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Preference {
+    /// By when news is here.
+    News,
+    /// Bounds between events, and around forms.
+    Deadlines,
+    /// How long activities of ours take.
+    Durations,
+}
+
+/// A proposal: with all its changes the network is controllable, and without any one of them it is not.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Proposal {
+    /// What is changed.
+    pub changes: Vec<Changed>,
+}
+
+/// One change.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Changed {
+    /// What it is, as part of a sentence: "at most 45 s instead of 40 s for `drive`".
+    pub title: String,
+    /// What is changed: "how long `drive` takes, at most".
+    pub what: String,
+    /// Where.
+    pub place: Span,
+    /// From which amount to which; nothing if it is no amount.
+    pub amounts: Option<(Bound, Bound)>,
+    /// The change of the source; nothing if what is read there is nothing to edit.
+    pub edits: Vec<Edit>,
+}
+
+/// What was found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Proposals {
+    /// The cheapest first: what costs more changes more, each for its size.
+    pub proposals: Vec<Proposal>,
+    /// What cannot make it controllable alone, and where it is written.
+    pub not_alone: Vec<(String, Span)>,
+    /// True if the search was given up before it was at its end.
+    pub gave_up: bool,
+}
+
+/// A bound that somebody has written, or several that are written once.
+struct Lever<'a> {
+    allowed: Allowed,
+    origin: &'a Origin,
+    place: Span,
+}
+
+/// What would make a network controllable; `None` if it is. `sources` are the texts the origins point into.
+///
+/// # Errors
+/// [`TooLarge`] if the durations add up to more than 64-bit microseconds can hold.
+pub fn proposals(
+    network: &Network,
+    origins: &Origins,
+    sources: &[Source],
+    wishes: &Wishes,
+) -> Result<Option<Proposals>, TooLarge> {
+    let levers = levers(network, origins, sources, wishes);
+    let allowed: Vec<Allowed> = levers.values().map(|lever| lever.allowed.clone()).collect();
+    let options = Options { limit: wishes.limit, ..Options::default() };
+    let Some(Repairs { repairs, not_alone, ended }) = repairs(network, &allowed, &options)? else {
+        return Ok(None);
+    };
+    let changed = |change: &Change| {
+        let Lever { origin, place, .. } = levers.get(&change.knob)?;
+        Some(Changed {
+            title: title(change, origin, edit::unit(*place, sources)),
+            what: what(change.knob.parts()[0], origin)?,
+            place: *place,
+            amounts: Some((change.from, change.to)),
+            edits: edit::edits(change, network, origin, sources),
+        })
+    };
+    let proposal = |changes: &[Change]| {
+        let changes: Option<Vec<Changed>> = changes.iter().map(changed).collect();
+        changes.map(|changes| Proposal { changes })
+    };
+    let mut found: Vec<Proposal> = repairs.iter().filter_map(|it| proposal(&it.changes)).collect();
+    let rest = wishes.limit.saturating_sub(found.len());
+    found.extend(structure::proposals(network, origins, sources, wishes)?.into_iter().take(rest));
+    // What has no part in the conflicts cannot settle them, which goes without saying.
+    let mut blamed: BTreeSet<Part> = BTreeSet::new();
+    for conflict in conflicts(network, wishes.limit)? {
+        blamed.extend(could_settle(network, &conflict));
+    }
+    let alone = |knob: &Knob| {
+        let lever = levers.get(knob).filter(|_| knob.parts().iter().any(|part| blamed.contains(part)))?;
+        Some((what(knob.parts()[0], lever.origin)?, lever.place))
+    };
+    let not_alone = not_alone.iter().filter_map(alone).collect();
+    Ok(Some(Proposals { proposals: found, not_alone, gave_up: ended == Ended::OutOfRounds }))
+}
+
+/// An amount in the unit that is written at a place.
+pub(crate) fn amount(amount: Duration, place: Span, sources: &[Source]) -> String {
+    edit::unit(place, sources).say(amount)
+}
+
+/// A change in words, and what it is in the source if it can be made there.
+pub(crate) fn change_of_source(
+    change: &Change,
+    network: &Network,
+    origins: &Origins,
+    sources: &[Source],
+) -> Option<(String, Option<Suggestion>)> {
+    let part = change.knob.parts()[0];
+    let (origin, which) = origins.of(part)?;
+    let title = title(change, origin, edit::unit(origin.places[which], sources));
+    let edits = match is_changeable(part, network, origin, sources) {
+        true => edit::edits(change, network, origin, sources),
+        false => Vec::new(),
+    };
+    let suggestion = (!edits.is_empty()).then(|| Suggestion { title: title.clone(), edits });
+    Some((title, suggestion))
+}
+
+/// All names by which bounds can be kept or weighed.
+pub fn names(origins: &Origins) -> impl Iterator<Item = &str> {
+    let all = origins.requirements.iter().chain(&origins.contingents);
+    all.flat_map(|origin| &origin.names).map(String::as_str)
+}
+
+/// The bounds that may be turned. What is written once is turned as one.
+fn levers<'a>(
+    network: &Network,
+    origins: &'a Origins,
+    sources: &[Source],
+    wishes: &Wishes,
+) -> BTreeMap<Knob, Lever<'a>> {
+    let requirements = (0..network.requirements().len())
+        .flat_map(|index| [Part::RequirementLower(index), Part::RequirementUpper(index)]);
+    let links = (0..network.contingents().len()).flat_map(|index| {
+        let nature = wishes.nature.then_some([Part::LinkLower(index), Part::LinkUpper(index)]);
+        nature.into_iter().flatten().chain([Part::DelayMax(index)])
+    });
+    let mut written: BTreeMap<(Span, Kind), Vec<Part>> = BTreeMap::new();
+    for part in requirements.chain(links) {
+        let Some((origin, which)) = origins.of(part).filter(|(origin, _)| origin.kind.is_amount()) else {
+            continue;
+        };
+        let place = origin.places[which];
+        if is_changeable(part, network, origin, sources)
+            && !wishes.keep.iter().any(|name| is_called(origin, name))
+        {
+            written.entry((place, Kind::of(part))).or_default().push(part);
+        }
+    }
+    let lever = |((place, _), parts): ((Span, Kind), Vec<Part>)| {
+        let part = parts[0];
+        let (origin, _) = origins.of(part)?;
+        let knob = Knob::together(parts)?;
+        let value = knob.value(network);
+        // One text with several values, by an argument, is not to be changed in one place.
+        let agree = |part: &Part| Knob::of(*part).is_some_and(|one| one.value(network) == value);
+        if !knob.parts().iter().all(agree) {
+            return None;
+        }
+        let knob = if keeps_order(part, network) { knob.limited(Duration::ZERO) } else { knob };
+        let unit = edit::step(place, value, sources);
+        let mut allowed = Allowed::relative(network, knob.clone(), unit);
+        allowed.weight = weight(allowed.weight, part, origin, wishes);
+        Some((knob, Lever { allowed, origin, place }))
+    };
+    written.into_iter().filter_map(lever).collect()
+}
+
+/// Which of the amounts at a place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Kind {
+    Least,
+    Most,
+    Late,
+}
+
+impl Kind {
+    fn of(part: Part) -> Kind {
+        match part {
+            Part::RequirementLower(_) | Part::LinkLower(_) => Kind::Least,
+            Part::DelayMin(_) | Part::DelayMax(_) => Kind::Late,
+            _ => Kind::Most,
+        }
+    }
+}
+
+/// True if a bound is there and is written by itself.
+fn is_changeable(part: Part, network: &Network, origin: &Origin, sources: &[Source]) -> bool {
+    let Some(knob) = Knob::of(part) else { return false };
+    let is_there = match part {
+        // News that comes at once cannot come sooner.
+        Part::DelayMax(_) => knob.value(network) != Bound::Finite(Duration::ZERO),
+        _ => knob.value(network) != Bound::Infinite,
+    };
+    let by_itself = match origin.kind {
+        OriginKind::Requirement | OriginKind::Link => true,
+        _ => match part {
+            Part::DelayMax(_) => origin.places[3] != origin.span,
+            _ => origin.places[0] != origin.places[1],
+        },
+    };
+    is_there && by_itself && edit::is_written(part, origin, sources)
+}
+
+/// What takes time is to take no less than none, what comes after something goes on to, and no news is there before it.
+fn keeps_order(part: Part, network: &Network) -> bool {
+    match part {
+        Part::RequirementLower(index) => {
+            network.requirements()[index].lower.finite().is_some_and(|lower| lower >= Duration::ZERO)
+        }
+        Part::RequirementUpper(index) => {
+            let requirement = network.requirements()[index];
+            requirement.lower == Bound::Infinite
+                && requirement.upper.finite().is_some_and(|upper| upper <= Duration::ZERO)
+        }
+        _ => matches!(part, Part::DelayMax(_)),
+    }
+}
+
+fn is_called(origin: &Origin, name: &str) -> bool {
+    origin.names.iter().any(|known| known.eq_ignore_ascii_case(name))
+}
+
+/// What a microsecond costs.
+fn weight(relative: u64, part: Part, origin: &Origin, wishes: &Wishes) -> u64 {
+    const DEAR: u128 = 10;
+    let is_preferred = match wishes.prefer {
+        None => true,
+        Some(Preference::News) => matches!(part, Part::DelayMax(_)),
+        Some(Preference::Durations) => origin.kind == OriginKind::Duration,
+        Some(Preference::Deadlines) => {
+            let between =
+                matches!(origin.kind, OriginKind::Constraint | OriginKind::Between | OriginKind::Requirement);
+            between && !matches!(part, Part::DelayMax(_))
+        }
+    };
+    let mut weight = u128::from(relative) * if is_preferred { 1 } else { DEAR };
+    for (_, millionths) in wishes.weights.iter().filter(|(name, _)| is_called(origin, name)) {
+        weight = weight.saturating_mul(u128::from(*millionths)) / 1_000_000;
+    }
+    u64::try_from(weight).unwrap_or(u64::MAX).max(1)
+}
+
+/// A change, as part of a sentence: "at most 45 s instead of 40 s for `drive`".
+fn title(change: &Change, origin: &Origin, unit: edit::Unit) -> String {
+    let to = change.to.finite().map_or("any time".to_string(), |to| unit.say(to));
+    let instead =
+        change.from.finite().map_or(String::new(), |from| format!(" instead of {}", unit.say(from)));
+    let of = origin.about();
+    match change.knob.parts()[0] {
+        Part::RequirementLower(_) => format!("at least {to}{instead} {of}"),
+        Part::LinkLower(_) => format!("Nature taking at least {to}{instead} {of}"),
+        Part::LinkUpper(_) => format!("Nature taking at most {to}{instead} {of}"),
+        Part::DelayMin(_) | Part::DelayMax(_) => format!("news of {} within {to}{instead}", origin.end),
+        _ => format!("at most {to}{instead} {of}"),
+    }
+}
+
+/// What a bound is about; `None` for what nobody wrote.
+pub fn what(part: Part, origin: &Origin) -> Option<String> {
+    let Origin { subject, end, .. } = origin;
+    let text = match (origin.kind, part) {
+        (_, Part::DelayMin(_) | Part::DelayMax(_)) => format!("how late {end} is heard"),
+        (OriginKind::Between | OriginKind::Requirement, _) => subject.clone(),
+        (OriginKind::Link, _) => format!("{subject}, Nature decides"),
+        (OriginKind::Contingent, _) => format!("how long {subject} takes, Nature decides"),
+        (OriginKind::Duration | OriginKind::Constraint, _) => format!("how long {subject} takes"),
+        _ => return None,
+    };
+    // Entries of a file have no name but their number.
+    let number =
+        origin.names.first().filter(|_| matches!(origin.kind, OriginKind::Requirement | OriginKind::Link));
+    Some(number.map_or_else(|| text.clone(), |number| format!("{number}: {text}")))
+}

@@ -1,0 +1,151 @@
+//! `kirk repair`: every proposal it makes, of every mission there is that cannot be promised, made and checked afresh.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+mod binary;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use binary::{kirk, kirk_with_input, stderr, stdout};
+use serde_json::{Value, json};
+
+fn missions(folder: &str) -> Vec<PathBuf> {
+    let entries = fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)).unwrap();
+    let mut files: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
+    files.retain(|file| file.extension().is_some_and(|extension| extension == "rmpl"));
+    files.sort();
+    files
+}
+
+fn status(arguments: &[&str]) -> Option<i32> {
+    kirk(arguments).status.code()
+}
+
+/// Makes every proposal for a copy of a mission, each for a copy of its own. Returns how many there are.
+fn each_proposal_is_enough(file: &Path, options: &[&str]) -> usize {
+    let path = file.to_str().unwrap();
+    let output = kirk(&[&["repair", path, "--format", "json"], options].concat());
+    let document: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let repairs = document["repairs"].as_array().unwrap();
+    assert_eq!(document["format"], "kirk-repair/1");
+    assert_eq!(output.status.code(), Some(i32::from(repairs.is_empty())), "{path}");
+    for (number, repair) in repairs.iter().enumerate() {
+        let folder = tempfile::tempdir().unwrap();
+        let copy = folder.path().join(file.file_name().unwrap());
+        fs::copy(file, &copy).unwrap();
+        let copy = copy.to_str().unwrap();
+        let applied = kirk(&[&["repair", copy, "--apply", &(number + 1).to_string()], options].concat());
+        assert_eq!(applied.status.code(), Some(0), "{path} {number}: {}", stderr(&applied));
+        assert_eq!(status(&["check", copy]), Some(0), "{path} {number}: {repair}");
+    }
+    repairs.len()
+}
+
+#[test]
+fn every_mission_of_the_gallery_is_explained_and_put_right_in_one_step() {
+    for file in missions("tests/rmpl/gallery") {
+        let name = file.file_stem().unwrap().to_str().unwrap();
+        let path = format!("tests/rmpl/gallery/{name}.rmpl");
+        assert!(each_proposal_is_enough(&file, &[]) > 0, "{name}");
+        let (check, repair) = (kirk(&["check", &path, "-q"]), kirk(&["repair", &path]));
+        let shown =
+            format!("{}\n{}\n{}", fs::read_to_string(&file).unwrap(), stderr(&check), stdout(&repair));
+        insta::assert_snapshot!(format!("gallery_{name}"), shown);
+    }
+}
+
+#[test]
+fn every_proposal_for_every_mission_that_cannot_be_promised_is_enough() {
+    let mut repaired = 0;
+    for file in missions("tests/rmpl/bad").into_iter().chain(missions("examples/rmpl")) {
+        if status(&["check", file.to_str().unwrap(), "-q"]) == Some(1) {
+            for options in
+                [&[][..], &["--nature"], &["--prefer", "news"], &["--prefer", "durations", "--limit", "3"]]
+            {
+                repaired += each_proposal_is_enough(&file, options);
+            }
+        }
+    }
+    assert!(repaired > 4, "{repaired}");
+}
+
+#[test]
+fn what_is_kept_is_not_touched_and_what_is_dear_comes_last() {
+    let first = |options: &[&str]| {
+        let file = "tests/rmpl/gallery/warm-up.rmpl";
+        let output = kirk(&[&["repair", file, "--format", "json"], options].concat());
+        let document: Value = serde_json::from_str(&stdout(&output)).unwrap();
+        document["repairs"][0]["changes"][0]["title"].as_str().unwrap_or_default().to_string()
+    };
+    assert_eq!(first(&[]), "at least 180 s instead of 300 s for `warm-up`");
+    assert!(
+        first(&["--keep", "warm-up"]).starts_with("at most 300 s instead of 180 s from the end of `arrive`")
+    );
+    assert!(first(&["--prefer", "deadlines"]).contains(" from the end of "));
+    assert!(
+        first(&["--weight", "warm-up=4"]).starts_with("at most 300 s instead of 180 s from"),
+        "{}",
+        first(&["--weight", "warm-up=4"])
+    );
+    assert_eq!(first(&["--keep", "warm-up", "--keep", "arrive"]), "");
+    let nature = first(&["--keep", "warm-up", "--keep", "hand-over", "--nature"]);
+    assert!(nature.starts_with("Nature taking at "), "{nature}");
+}
+
+#[test]
+fn a_patch_says_what_applying_does_and_changes_nothing() {
+    let file = "tests/rmpl/gallery/late-news.rmpl";
+    let before = fs::read_to_string(file).unwrap();
+    let patch = kirk(&["repair", file, "--diff", "--apply", "2"]);
+    insta::assert_snapshot!(stdout(&patch));
+    assert_eq!(fs::read_to_string(file).unwrap(), before);
+}
+
+/// News of `b` is up to 5 s late, and `c` is to come within 3 s of it.
+const NETWORK: &str = r#"{"format": "kirk-network/1", "name": "n", "origin": "a", "events": ["a", "b", "c"],
+ "requirements": [{"from": "b", "to": "c", "lower": 0, "upper": 3}],
+ "contingents": [{"from": "a", "to": "b", "lower": 20, "upper": 40, "delay": [4, 5]}]}"#;
+
+#[test]
+fn a_network_file_is_repaired_where_its_numbers_stand() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("n.json");
+    let path = file.to_str().unwrap();
+    fs::write(&file, format!("\u{feff}{NETWORK}")).unwrap();
+    let output = kirk(&["repair", path]);
+    let told = stdout(&output);
+    assert!(told.contains("news of `b` within 3 s instead of 5 s"), "{told}");
+    assert!(told.contains("at most 5 s instead of 3 s from `b` to `c`"), "{told}");
+    assert_eq!(status(&["repair", path, "--apply", "1", "-q"]), Some(0));
+    let after = fs::read_to_string(&file).unwrap();
+    assert!(after.starts_with('\u{feff}') && after.contains(r#""delay": [3, 3]"#), "{after}");
+    let again = kirk(&["repair", path]);
+    assert!(stdout(&again).contains("there is nothing to repair") && again.status.success());
+    let json: Value = serde_json::from_str(&stdout(&kirk(&["repair", path, "--format", "json"]))).unwrap();
+    assert_eq!((&json["controllable"], &json["repairs"]), (&json!(true), &json!([])));
+}
+
+#[test]
+fn wrong_wishes_are_refused_and_nothing_is_changed() {
+    let file = "tests/rmpl/gallery/deadline.rmpl";
+    let before = fs::read_to_string(file).unwrap();
+    for (arguments, said) in [
+        (&["repair", file, "--keep", "drvie"][..], "did you mean `drive`?"),
+        (&["repair", file, "--weight", "drive"], "expected NAME=W"),
+        (&["repair", file, "--weight", "drive=0"], "`--keep drive` leaves it as it is"),
+        (&["repair", file, "--apply", "7"], "there is only proposal 1"),
+        (&["repair", file, "--apply", "0"], "there is no proposal 0"),
+        (&["repair", file, "--limit", "0"], "from 1 to 100"),
+        (&["repair", "examples/rmpl/robot.rmpl", "--apply", "1"], "there is nothing to repair"),
+        (&["repair", "tests/rmpl/bad/K0109-empty.rmpl"], "K0109"),
+        (&["repair", "nowhere.rmpl"], "there is no such file"),
+    ] {
+        let output = kirk(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(stderr(&output).contains(said), "{arguments:?}: {}", stderr(&output));
+    }
+    assert_eq!(fs::read_to_string(file).unwrap(), before);
+    let piped = kirk_with_input(&["repair", "-", "--apply", "1"], before.as_bytes());
+    assert_eq!(piped.status.code(), Some(2));
+    assert!(stderr(&piped).contains("`--diff` prints the change"), "{}", stderr(&piped));
+}

@@ -18,6 +18,9 @@ use serde_json::value::RawValue;
 
 const MICROS_PER_SECOND: i64 = 1_000_000;
 
+/// An exponent beyond which nothing is exact, or nothing is not too large, however many digits there are.
+const FAR: i64 = 1 << 40;
+
 /// A date: microseconds after the origin of the network (which is executed at time 0).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Time(i64);
@@ -169,46 +172,59 @@ impl Duration {
 
     /// Reads seconds written in decimal (`15`, `-1.5`, `.5`, `1e3`), exact to a microsecond.
     pub fn parse_seconds(text: &str) -> Result<Duration, ParseDurationError> {
-        let (mantissa, exponent) = match text.find(['e', 'E']) {
-            None => (text, 0),
-            Some(at) => {
-                let exponent = text[at + 1..].parse::<i32>().map_err(|_| ParseDurationError::NotANumber)?;
-                (&text[..at], exponent)
-            }
-        };
-        let (negative, digits) = match mantissa.as_bytes().first() {
-            Some(b'-') => (true, &mantissa[1..]),
-            Some(b'+') => (false, &mantissa[1..]),
-            _ => (false, mantissa),
-        };
+        Duration::parse(text, MICROS_PER_SECOND)
+    }
+
+    /// Reads a number written in decimal, of units of so many microseconds (seconds, minutes, days), exact to a
+    /// microsecond.
+    pub fn parse(text: &str, unit: i64) -> Result<Duration, ParseDurationError> {
+        let (mantissa, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
+        let digits = unsigned(mantissa);
         let (whole, fraction) = digits.split_once('.').unwrap_or((digits, ""));
-        if whole.is_empty() && fraction.is_empty()
-            || !whole.bytes().chain(fraction.bytes()).all(|b| b.is_ascii_digit())
-        {
+        let all = [whole, fraction].concat();
+        let is_natural = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+        if !is_natural(&all) || !is_natural(unsigned(exponent)) {
             return Err(ParseDurationError::NotANumber);
         }
-        // The value is `all digits` * 10^(exponent - fraction digits) seconds; strip zeros so that the power is small.
-        let all: String = [whole, fraction].concat();
-        let significant = all.trim_start_matches('0').trim_end_matches('0');
-        if significant.is_empty() {
+        // The value is `digits` * 10^power units; without zeros at the end, so that the power is what counts.
+        let digits = all.trim_end_matches('0');
+        let zeros = (all.len() - digits.len()) as i64;
+        let digits = digits.trim_start_matches('0');
+        if digits.is_empty() {
             return Ok(Duration::ZERO);
         }
-        let stripped = all.len() - all.trim_end_matches('0').len();
-        let power = i64::from(exponent) - fraction.len() as i64 + stripped as i64 + 6;
-        if power < 0 {
+        let beyond = if exponent.starts_with('-') { -FAR } else { FAR };
+        let exponent = exponent.parse().unwrap_or(beyond).clamp(-FAR, FAR);
+        let power = exponent - fraction.len() as i64 + zeros;
+        if digits.len() as i64 + power + i64::from(unit.ilog10()) > 17 {
+            return Err(ParseDurationError::TooLarge);
+        }
+        // No unit has so many twos and fives that it makes up for more.
+        if power < -18 {
             return Err(ParseDurationError::TooPrecise);
         }
-        if significant.len() as i64 + power > 19 {
-            return Err(ParseDurationError::TooLarge);
-        }
-        let mut micros: i128 = significant.parse().map_err(|_| ParseDurationError::TooLarge)?;
-        micros *= 10_i128.pow(power as u32);
-        if micros > i128::from(Duration::MAX.0) {
-            return Err(ParseDurationError::TooLarge);
-        }
-        let micros = micros as i64;
-        Ok(Duration(if negative { -micros } else { micros }))
+        // By now it has 36 digits at most.
+        let top = digits.parse::<i128>().map_err(|_| ParseDurationError::TooLarge)? * i128::from(unit);
+        let scale = 10_i128.pow(power.unsigned_abs() as u32);
+        let (top, bottom) = if power < 0 { (top, scale) } else { (top * scale, 1) };
+        Duration::exactly(if mantissa.starts_with('-') { -top } else { top }, bottom)
     }
+
+    /// `top / bottom` microseconds.
+    pub fn exactly(top: i128, bottom: i128) -> Result<Duration, ParseDurationError> {
+        let micros = top.checked_div(bottom).ok_or(ParseDurationError::NotANumber)?;
+        if micros.unsigned_abs() > Duration::MAX.0 as u128 {
+            return Err(ParseDurationError::TooLarge);
+        }
+        if top % bottom != 0 {
+            return Err(ParseDurationError::TooPrecise);
+        }
+        Ok(Duration(micros as i64))
+    }
+}
+
+fn unsigned(number: &str) -> &str {
+    number.strip_prefix(['+', '-']).unwrap_or(number)
 }
 
 impl Bound {
@@ -435,10 +451,43 @@ mod tests {
             ("1.00000000000000001", ParseDurationError::TooPrecise),
             ("1e11", ParseDurationError::TooLarge),
             ("1e999999999", ParseDurationError::TooLarge),
+            ("1e99999999999999999999", ParseDurationError::TooLarge),
+            ("1e-99999999999999999999", ParseDurationError::TooPrecise),
+            ("1e+", ParseDurationError::NotANumber),
+            ("--1", ParseDurationError::NotANumber),
             ("123456789012345678901234567890", ParseDurationError::TooLarge),
         ] {
             assert_eq!(Duration::parse_seconds(text), Err(error), "{text:?}");
         }
+    }
+
+    /// What is written means what its digits say, place by place.
+    #[test]
+    fn numbers_are_what_their_digits_say() {
+        let mut fates = [0; 3];
+        for seed in 0..20_000 {
+            let mut random = fastrand::Rng::with_seed(seed);
+            let mut digits = || -> String { (0..random.usize(1..5)).map(|_| random.digit(10)).collect() };
+            let (whole, fraction) = (digits(), digits());
+            let exponent = random.i32(-5..=5);
+            let unit = *random.choice(&[1_000_000, 60_000_000, 3_600_000_000, 86_400_000_000]).unwrap();
+            let text = format!("-{whole}.{fraction}e{exponent}");
+            let number: i128 = format!("{whole}{fraction}").parse().unwrap();
+            let scaled = number * i128::from(unit) * 10_i128.pow((exponent + 5) as u32);
+            let one = 10_i128.pow(fraction.len() as u32 + 5);
+            let expected = match (scaled / one, scaled % one) {
+                (micros, _) if micros > i128::from(Duration::MAX.0) => Err(ParseDurationError::TooLarge),
+                (micros, 0) => Ok(Duration(-micros as i64)),
+                _ => Err(ParseDurationError::TooPrecise),
+            };
+            assert_eq!(Duration::parse(&text, unit), expected, "seed {seed}: {text} of {unit}");
+            fates[match expected {
+                Ok(_) => 0,
+                Err(ParseDurationError::TooPrecise) => 1,
+                Err(_) => 2,
+            }] += 1;
+        }
+        assert!(fates.iter().all(|&count| count > 100), "{fates:?}");
     }
 
     #[test]

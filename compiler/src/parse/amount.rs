@@ -21,7 +21,7 @@ pub(super) fn is_calculation(form: &Form) -> bool {
 
 fn kind(form: &Form, what: &str, unit: i64, problems: &mut Problems) -> AmountKind {
     match &form.kind {
-        FormKind::Number(text) => match number(text, i128::from(unit)) {
+        FormKind::Number(text) => match number(text, unit) {
             Ok(value) => return AmountKind::Number(value),
             Err(error) => problems.push(slips::amount::inexact(form, what, text, error)),
         },
@@ -74,52 +74,14 @@ pub(super) fn is_name(symbol: &Symbol) -> bool {
     }
 }
 
-/// The number of microseconds of a number as written, in units of `unit` microseconds.
-pub(super) fn number(text: &str, unit: i128) -> Result<Duration, ParseDurationError> {
-    // Exact: numerator and denominator as integers, as long as they are of a sensible length.
-    let (negative, text) = text.strip_prefix('-').map_or((false, text), |rest| (true, rest));
-    let (top, bottom) = match text.split_once('/') {
-        Some((top, bottom)) => (integer(top)?, integer(bottom)?),
-        None => {
-            let at = text.find(['e', 'd', 'f', 's', 'l']);
-            let (mantissa, exponent) = at.map_or((text, "0"), |at| (&text[..at], &text[at + 1..]));
-            let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
-            let fraction = fraction.trim_end_matches('0');
-            let digits = integer(&format!("0{whole}{fraction}"))?;
-            if digits == 0 {
-                return Ok(Duration::ZERO);
-            }
-            let exponent = exponent.strip_prefix('+').unwrap_or(exponent);
-            let exponent: i64 =
-                exponent.parse().unwrap_or(if exponent.starts_with('-') { -1_000 } else { 1_000 });
-            let power = exponent.saturating_sub(fraction.len() as i64);
-            match u32::try_from(power.unsigned_abs()).ok().and_then(|n| 10_i128.checked_pow(n)) {
-                Some(scale) if power < 0 => (digits, scale),
-                Some(scale) => (digits.checked_mul(scale).ok_or(ParseDurationError::TooLarge)?, 1),
-                None if power < 0 => return Err(ParseDurationError::TooPrecise),
-                None => return Err(ParseDurationError::TooLarge),
-            }
-        }
+/// A number as written, in units of so many microseconds.
+pub(super) fn number(text: &str, unit: i64) -> Result<Duration, ParseDurationError> {
+    let Some((top, bottom)) = text.split_once('/') else {
+        return Duration::parse(&text.replace(['d', 'f', 's', 'l'], "e"), unit);
     };
-    let micros = top.checked_mul(unit).ok_or(ParseDurationError::TooLarge)?;
-    if bottom == 0 {
-        return Err(ParseDurationError::NotANumber);
-    }
-    if micros / bottom > i128::from(Duration::MAX.as_micros()) {
-        return Err(ParseDurationError::TooLarge);
-    }
-    if micros % bottom != 0 {
-        return Err(ParseDurationError::TooPrecise);
-    }
-    let micros = (micros / bottom) as i64;
-    Ok(Duration::from_micros(if negative { -micros } else { micros }))
-}
-
-fn integer(text: &str) -> Result<i128, ParseDurationError> {
-    match text.trim_start_matches('0') {
-        "" => Ok(0),
-        digits => digits.parse().map_err(|_| ParseDurationError::TooLarge),
-    }
+    let integer = |text: &str| text.parse::<i128>().map_err(|_| ParseDurationError::TooLarge);
+    let top = integer(top)?.checked_mul(i128::from(unit)).ok_or(ParseDurationError::TooLarge)?;
+    Duration::exactly(top, integer(bottom)?)
 }
 
 #[cfg(test)]

@@ -11,10 +11,10 @@ use kirk_network::{Network, graphml, json, text};
 use serde::Serialize;
 
 use crate::args::{Common, Compile, Stage, StageFormat};
-use crate::check::{judge, too_large};
 use crate::foreign::visible;
 use crate::input::{Input, load_all};
 use crate::json::line;
+use crate::judge::{judge, too_large};
 use crate::output::{Status, complain, deliver};
 use crate::report::Reporter;
 

@@ -14,6 +14,7 @@ mod foreign;
 mod generate;
 mod input;
 mod json;
+mod judge;
 mod live;
 mod lsp;
 mod news;

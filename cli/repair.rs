@@ -12,10 +12,10 @@ use serde::Serialize;
 use similar::TextDiff;
 
 use crate::args::{Common, Prefer, RepairOf, TextOrJson};
-use crate::check::too_large;
 use crate::foreign::one_line;
 use crate::input::{Input, load_all, without_mark};
 use crate::json::line;
+use crate::judge::too_large;
 use crate::output::{Status, complain, print, print_line};
 use crate::replace::replace;
 use crate::report::{Reporter, SpanJson};

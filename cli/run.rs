@@ -14,11 +14,11 @@ use serde::Deserialize;
 use serde::de::{Deserializer, MapAccess, Visitor};
 
 use crate::args::{Common, Nature, Run, StrategyName, TextOrJson};
-use crate::check::too_large;
 use crate::conflict;
 use crate::execute;
 use crate::input::{load_all, read, without_mark};
 use crate::json::line;
+use crate::judge::too_large;
 use crate::news::treatment;
 use crate::output::{Status, eprint, print};
 use crate::report::Reporter;

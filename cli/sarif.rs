@@ -10,8 +10,8 @@ use kirk_compiler::code::markdown;
 use kirk_compiler::{Code, Diagnostic, Severity, Suggestion, explain};
 use serde_json::{Value, json};
 
-use crate::check::CheckJson;
 use crate::input::Input;
+use crate::judge::CheckJson;
 use crate::output::Status;
 use crate::report::{Reporter, SpanJson};
 

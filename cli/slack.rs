@@ -16,10 +16,10 @@ use kirk_network::{Bound, Duration, EventId, Network, Part, Time};
 use serde::Serialize;
 
 use crate::args::{Common, SlackOf, TextOrJson};
-use crate::check::judge;
 use crate::foreign::one_line;
 use crate::input::{Input, load_all};
 use crate::json::line;
+use crate::judge::judge;
 use crate::output::{Status, print, print_line};
 use crate::report::{Reporter, SpanJson};
 

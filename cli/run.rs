@@ -4,7 +4,7 @@ use std::fmt;
 use std::io;
 
 use kirk_compiler::{Code, Diagnostic, Severity, Source, Span};
-use kirk_network::json::{ReadProblem, Seconds, parse};
+use kirk_network::json::{ReadProblem, parse};
 use kirk_network::{Duration, EventId, Network, Time};
 use kirk_runtime::execution::FORMAT;
 use kirk_runtime::{
@@ -180,7 +180,7 @@ impl Observations {
         self.sources.push(Source::new(file, text.as_str()));
         match parsed {
             Ok(ObservationFile(entries)) => {
-                for (name, Seconds(time)) in entries {
+                for (name, time) in entries {
                     let at = text.find(&format!("\"{name}\"")).map_or(0, |at| at + 1);
                     self.add(&name, time, Span::new(source, at, at + name.len()), network);
                 }
@@ -276,7 +276,7 @@ impl Observations {
 }
 
 /// A JSON object of event: time, in order, nothing lost.
-struct ObservationFile(Vec<(String, Seconds)>);
+struct ObservationFile(Vec<(String, Duration)>);
 
 impl<'de> Deserialize<'de> for ObservationFile {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<ObservationFile, D::Error> {

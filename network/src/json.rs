@@ -7,11 +7,8 @@ mod place;
 mod reader;
 mod writer;
 
-use serde::{Deserialize, Serialize};
-
 use crate::model::Network;
 use crate::source_map::SourceMap;
-use crate::time::Duration;
 
 pub use parse::parse;
 pub use place::amount_in;
@@ -37,14 +34,4 @@ pub fn read(text: &str) -> Result<Network, Vec<ReadProblem>> {
 /// Reads a network file as [`read`] does, and remembers where its constraints stand.
 pub fn read_with_source_map(text: &str) -> Result<(Network, SourceMap), Vec<ReadProblem>> {
     reader::read(text)
-}
-
-/// A duration as a JSON number of seconds, read and written digit by digit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(transparent)]
-pub struct Seconds(pub Duration);
-
-/// Shorthand for [`Seconds`].
-pub fn seconds(duration: Duration) -> Seconds {
-    Seconds(duration)
 }

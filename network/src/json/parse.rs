@@ -89,7 +89,7 @@ mod tests {
     use serde_json::Value;
 
     use super::*;
-    use crate::json::Seconds;
+    use crate::time::Duration;
 
     #[derive(Debug, Deserialize, PartialEq)]
     #[serde(rename_all = "lowercase")]
@@ -104,7 +104,7 @@ mod tests {
         name: String,
         count: Option<u64>,
         #[serde(default)]
-        within: Option<(Seconds, Seconds)>,
+        within: Option<(Duration, Duration)>,
         #[serde(default)]
         colours: Vec<Colour>,
     }

@@ -116,6 +116,14 @@ impl<'de> Deserializer<'de> for Element<'de> {
         self.deserialize_str(visitor)
     }
 
+    fn deserialize_u64<V: Visitor<'de>>(self, visitor: V) -> Read<'de, V> {
+        let is_natural = self.raw.get().bytes().all(|byte| byte.is_ascii_digit());
+        let expected =
+            if is_natural { "a whole number below 2^64" } else { "a whole number that is not negative" };
+        let number = self.read().map_err(|_| Wrong::Expected(expected.to_string()).at(self))?;
+        visitor.visit_u64(number).map_err(|wrong: Wrong| wrong.at(self))
+    }
+
     fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Read<'de, V> {
         self.visit_if('[', "a list", visitor)
     }
@@ -157,7 +165,7 @@ impl<'de> Deserializer<'de> for Element<'de> {
     }
 
     forward_to_deserialize_any! {
-        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char bytes byte_buf unit unit_struct tuple_struct map
+        bool i8 i16 i32 i64 i128 u8 u16 u32 u128 f32 f64 char bytes byte_buf unit unit_struct tuple_struct map
         identifier
     }
 }

@@ -202,6 +202,8 @@ mod tests {
             r#"{"name": "x", "count": -1}"#,
             r#"{"name": "x", "count": 1.5}"#,
             r#"{"name": "x", "count": "many"}"#,
+            r#"{"name": "x", "count": [1]}"#,
+            r#"{"name": "x", "count": 18446744073709551616}"#,
             r#"{"name": "x", "within": [1, "soon"]}"#,
             r#"{"name": "x", "within": [1, 1e-9]}"#,
             r#"{"name": "x", "within": [1]}"#,
@@ -223,11 +225,15 @@ mod tests {
         {"name": "x", "name": "y", "count": null}
                               ^ the field `name` is there twice
         {"name": "x", "count": -1}
-                               ^ expected u64, not `-1`
+                               ^ expected a whole number that is not negative, not `-1`
         {"name": "x", "count": 1.5}
-                               ^ expected u64, not `1.5`
+                               ^ expected a whole number that is not negative, not `1.5`
         {"name": "x", "count": "many"}
-                               ^ expected u64, not the text "many"
+                               ^ expected a whole number that is not negative, not the text "many"
+        {"name": "x", "count": [1]}
+                               ^ expected a whole number that is not negative, not a list
+        {"name": "x", "count": 18446744073709551616}
+                               ^ expected a whole number below 2^64, not `18446744073709551616`
         {"name": "x", "within": [1, "soon"]}
                                     ^ `"soon"`: this is not a number of seconds
         {"name": "x", "within": [1, 1e-9]}

@@ -132,6 +132,9 @@ pub(crate) struct Run {
     /// Also print the events that no user wrote.
     #[arg(long)]
     pub(crate) internal: bool,
+    /// Also print what decided the time of each event: another event, its news or the lack of it, an order.
+    #[arg(long)]
+    pub(crate) why: bool,
     /// How to print the result.
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
     pub(crate) format: TextOrJson,

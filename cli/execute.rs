@@ -7,7 +7,9 @@ use jiff::Timestamp;
 use kirk_compiler::episode::{Episode, Kind};
 use kirk_executive::{Driver, Ended, Http, Mission, Options, Ready, Resumption, Said, Screen, Zero, begin};
 use kirk_network::{Duration, Time};
-use kirk_runtime::{Execution, Outcome, Plan, Scope, handovers, leave_out_natures, merge_companions};
+use kirk_runtime::{
+    Dispatcher, Execution, Outcome, Plan, Scope, handovers, leave_out_natures, merge_companions,
+};
 
 use crate::args::{
     Common, CompanionName, DriverEvents, DriverStarts, Live, Resume, Run, ScreenWhen, StrategyName,
@@ -71,7 +73,7 @@ pub(crate) fn resume(arguments: &Resume, common: &Common) -> io::Result<Status> 
             remark(&text);
         }
     };
-    let show = Show { internal: arguments.internal, format: arguments.format };
+    let show = Show { internal: arguments.internal, format: arguments.format, why: false };
     let wanted = arguments.screen.map(screen);
     if let Some(Err(message)) = wanted.map(has_screen) {
         return wrong(&message);
@@ -87,7 +89,7 @@ pub(crate) fn resume(arguments: &Resume, common: &Common) -> io::Result<Status> 
             if !common.quiet {
                 remark("the mission is over; there is nothing to go on with");
             }
-            show.execution(&execution)
+            show.execution(&execution, None)
         }
         Err(message) => wrong(&message),
     }
@@ -98,18 +100,20 @@ pub(crate) fn resume(arguments: &Resume, common: &Common) -> io::Result<Status> 
 pub(crate) struct Show {
     pub(crate) internal: bool,
     pub(crate) format: TextOrJson,
+    /// With what decided each time.
+    pub(crate) why: bool,
 }
 
 impl Show {
-    fn of_run(arguments: &Run) -> Show {
-        Show { internal: arguments.internal, format: arguments.format }
+    pub(crate) fn of_run(arguments: &Run) -> Show {
+        Show { internal: arguments.internal, format: arguments.format, why: arguments.why }
     }
 
-    /// Prints an execution, and says by the exit status how it ended.
-    pub(crate) fn execution(self, execution: &Execution) -> io::Result<Status> {
+    /// Prints an execution by a dispatcher, if that is at hand, and says by the exit status how it ended.
+    pub(crate) fn execution(self, execution: &Execution, by: Option<&Dispatcher>) -> io::Result<Status> {
         let text = match self.format {
             TextOrJson::Json => line(execution)?,
-            TextOrJson::Text => timetable(execution),
+            TextOrJson::Text => timetable(execution, by.filter(|_| self.why)),
         };
         match print(&text) {
             // The terminal is gone; the mission was executed all the same.
@@ -152,7 +156,7 @@ fn finish(
     if !common.quiet {
         say_lateness(&ended);
     }
-    show.execution(&ended.execution)
+    show.execution(&ended.execution, Some(ended.executive.dispatcher()))
 }
 
 /// True if the mission is shown on a screen, with a key for each event; an error if it is to be and cannot.

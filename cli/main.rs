@@ -29,6 +29,7 @@ mod slack;
 mod timetable;
 mod verify;
 mod watch;
+mod why;
 
 use std::process::ExitCode;
 

@@ -49,8 +49,8 @@ pub(crate) fn replay(arguments: &Replay, common: &Common) -> io::Result<Status> 
     });
     match replayed {
         Ok(replayed) => {
-            let show = Show { internal: arguments.internal, format: arguments.format };
-            show.execution(&replayed.executive.execution(replayed.at, arguments.internal))
+            let show = Show { internal: arguments.internal, format: arguments.format, why: false };
+            show.execution(&replayed.executive.execution(replayed.at, arguments.internal), None)
         }
         Err(bad) => {
             complain(&format!("`{file}`, {bad}"));

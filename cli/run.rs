@@ -8,23 +8,28 @@ use kirk_network::json::{ReadProblem, parse};
 use kirk_network::{Duration, EventId, Network, Time};
 use kirk_runtime::execution::FORMAT;
 use kirk_runtime::{
-    Execution, Failure, Impossible, NoPlan, Outcome, Plan, Reason, Simulation, Strategy, Temper, simulate,
+    Execution, Failure, Impossible, NoPlan, Outcome, Plan, Reason, Simulation, Strategy, Temper, explained,
 };
 use serde::Deserialize;
 use serde::de::{Deserializer, MapAccess, Visitor};
 
 use crate::args::{Common, Nature, Run, StrategyName, TextOrJson};
 use crate::conflict;
-use crate::execute;
+use crate::execute::{self, Show};
 use crate::input::{load_all, read, without_mark};
 use crate::json::line;
 use crate::judge::too_large;
 use crate::news::treatment;
-use crate::output::{Status, eprint, print};
+use crate::output::{Status, complain, eprint, print};
 use crate::report::Reporter;
-use crate::timetable::timetable;
 
 pub(crate) fn run(arguments: &Run, common: &Common) -> io::Result<Status> {
+    if arguments.why && arguments.format == TextOrJson::Json {
+        complain(
+            "`--why` adds a column to the timetable for people, and `--format json` prints none: leave out one of them",
+        );
+        return Ok(Status::Wrong);
+    }
     let mut input = load_all(&arguments.files, &arguments.selection);
     let plan = match input.network.as_ref().map(Plan::new) {
         None => None,
@@ -81,19 +86,15 @@ pub(crate) fn run(arguments: &Run, common: &Common) -> io::Result<Status> {
         observations: given.by_event.iter().map(|heard| (heard.event, heard.time)).collect(),
         internal: arguments.internal,
     };
-    let execution = match simulate(&plan, &input.program(&arguments.selection), &simulation) {
-        Ok(execution) => execution,
+    let explained = match explained(&plan, &input.program(&arguments.selection), &simulation) {
+        Ok(explained) => explained,
         Err(impossible) => {
             let diagnostic = given.impossible(&impossible, plan.network());
             Reporter::new(&given.sources).show(&[diagnostic], common)?;
             return Ok(Status::Wrong);
         }
     };
-    match arguments.format {
-        TextOrJson::Json => print(&line(&execution)?)?,
-        TextOrJson::Text => print(&timetable(&execution))?,
-    }
-    Ok(if execution.outcome == Outcome::Completed { Status::Yes } else { Status::No })
+    Show::of_run(arguments).execution(&explained.execution, Some(&explained.dispatcher))
 }
 
 /// The record of a mission that was not started because it cannot be promised.

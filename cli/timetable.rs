@@ -1,12 +1,14 @@
 //! The timetable of an execution, for people.
 
 use kirk_network::time::Interval;
-use kirk_runtime::{Execution, How, Outcome, Row};
+use kirk_runtime::{Dispatcher, Execution, How, Outcome, Row};
 
 use crate::foreign::one_line;
+use crate::why::why;
 
-/// One line for each row: time, event, how, and where the event must have happened if it was heard late.
-pub(crate) fn timetable(execution: &Execution) -> String {
+/// One line for each row: time, event, how, and where the event must have happened if it was heard late. If the dispatcher is
+/// given also why.
+pub(crate) fn timetable(execution: &Execution, by: Option<&Dispatcher>) -> String {
     let end = match (&execution.outcome, &execution.failure) {
         (Outcome::Failed, Some(failure)) => {
             format!("failed at {} s: {} ({})", failure.time, one_line(&failure.detail), failure.reason.word())
@@ -15,15 +17,19 @@ pub(crate) fn timetable(execution: &Execution) -> String {
         (Outcome::Running, _) => format!("at {} s", execution.makespan),
         (Outcome::Completed, _) => format!("completed in {} s", execution.makespan),
     };
-    let cells: Vec<[String; 3]> = execution.rows.iter().map(cells).collect();
-    let width = |column: usize, heading: &str| {
-        cells.iter().map(|cell| cell[column].chars().count()).chain([heading.len()]).max().unwrap_or(0)
+    let headings = ["time", "event", "how", if by.is_some() { "why" } else { "" }].map(str::to_string);
+    let line = |row: &Row| {
+        let [time, event, how] = cells(row);
+        [time, event, how, by.map(|dispatcher| why(dispatcher, row)).unwrap_or_default()]
     };
-    let (time, event) = (width(0, "time"), width(1, "event"));
-    let mut text =
-        format!("{}: {end}\n\n  {:>time$}  {:<event$}  how\n", one_line(&execution.program), "time", "event");
-    for [at, name, how] in &cells {
-        text.push_str(&format!("  {at:>time$}  {name:<event$}  {how}\n"));
+    let lines: Vec<[String; 4]> = [headings].into_iter().chain(execution.rows.iter().map(line)).collect();
+    let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
+    let [at, name, in_which_way] = [0, 1, 2].map(width);
+    let mut text = format!("{}: {end}\n\n", one_line(&execution.program));
+    for [time, event, how, why] in &lines {
+        let line = format!("  {time:>at$}  {event:<name$}  {how:<in_which_way$}  {why}");
+        text.push_str(line.trim_end());
+        text.push('\n');
     }
     text
 }

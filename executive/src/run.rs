@@ -28,6 +28,8 @@ use crate::snapshot::{Waits, snapshot};
 pub struct Ended {
     /// The record.
     pub execution: Execution,
+    /// The executive at its end, which knows why.
+    pub executive: Executive,
     /// How late its dispatches were.
     pub lateness: Lateness,
     /// Why it was stopped from outside, if it was. Its journal can be resumed.
@@ -100,7 +102,7 @@ impl Ready {
         if let Some(server) = server {
             server.stop();
         }
-        Ended { execution, lateness: work.lateness, stopped: work.stopped }
+        Ended { execution, executive: work.executive, lateness: work.lateness, stopped: work.stopped }
     }
 }
 

@@ -7,12 +7,15 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use kirk_network::Dispatchable;
+use kirk_network::controllability::Wait;
 use kirk_network::stnu::{Edge, NONE, Rows};
 
 /// The state of an execution of one dispatchable network; all times in microseconds after the origin.
 #[derive(Clone, Debug)]
 pub(crate) struct Agenda {
     edges: Vec<Edge>,
+    /// How many of them are of the network; the others say what follows what.
+    ordinary: usize,
     /// For each edge: its source is not executed before its target.
     holds: Vec<bool>,
     outgoing: Rows,
@@ -36,14 +39,39 @@ struct NodeState {
     /// How long before it is due it is offered.
     lead: i64,
     lower: i64,
+    /// What the node came to wait for until then.
+    hold: Hold,
     upper: i64,
     /// How many nodes must be executed before this one.
     held_by: u32,
 }
 
+impl NodeState {
+    /// Of what holds until the same time, what came last counts.
+    fn wait_until(&mut self, time: i64, hold: Hold) {
+        if time >= self.lower {
+            (self.lower, self.hold) = (time, hold);
+        }
+    }
+}
+
+/// What a node waits for, and so what its earliest time comes of.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Hold {
+    /// For nothing but time 0.
+    Nothing,
+    /// Until so long after another node.
+    After { node: u32, distance: i64 },
+    /// For another node to be done, at whatever distance.
+    Order { node: u32 },
+    /// Until so long after the activation of a link, as its end has not come.
+    Wait { link: u32, distance: i64 },
+}
+
 #[derive(Clone, Debug)]
 struct ActiveWait {
     waiter: u32,
+    link: u32,
     weight: i64,
     /// Until when, once the activation is executed; `None` before, and again when the wait has ended.
     until: Option<i64>,
@@ -58,6 +86,7 @@ impl Agenda {
             taken: false,
             lead: lead(node),
             lower: 0,
+            hold: Hold::Nothing,
             upper: i64::MAX,
             held_by: 0,
         };
@@ -88,13 +117,14 @@ impl Agenda {
                 .chain(net.follows.iter().map(|_| true))
                 .collect(),
             edges,
+            ordinary: net.edges.len(),
             starting: Rows::new(net.nodes, net.links.iter().map(|link| link.activation)),
             waits_for: Rows::new(net.links.len() as u32, net.waits.iter().map(|wait| wait.link)),
             waits_of: Rows::new(net.nodes, net.waits.iter().map(|wait| wait.waiter)),
             waits: net
                 .waits
                 .iter()
-                .map(|wait| ActiveWait { waiter: wait.waiter, weight: wait.weight, until: None })
+                .map(|&Wait { waiter, link, weight }| ActiveWait { waiter, link, weight, until: None })
                 .collect(),
             ending,
             nodes,
@@ -133,6 +163,19 @@ impl Agenda {
         self.earliest(node).unwrap_or(i64::MAX)
     }
 
+    /// What the time at which a node is due comes of.
+    pub(crate) fn hold(&self, node: u32) -> Hold {
+        let NodeState { lower, hold, .. } = self.nodes[node as usize];
+        let waits = self.waits_of.of(node).iter().map(|&wait| &self.waits[wait as usize]);
+        let longest = waits.filter(|wait| wait.until > Some(lower)).max_by_key(|wait| wait.until);
+        longest.map_or(hold, |wait| Hold::Wait { link: wait.link, distance: wait.weight.saturating_neg() })
+    }
+
+    /// The link that ends at a node, if one does.
+    pub(crate) fn ending(&self, node: u32) -> Option<u32> {
+        Some(self.ending[node as usize]).filter(|&link| link != NONE)
+    }
+
     /// Somebody has a node in hand: it is not offered again, and executed when that is known.
     pub(crate) fn take(&mut self, node: u32) {
         self.nodes[node as usize].taken = true;
@@ -152,8 +195,12 @@ impl Agenda {
             let edge = self.incoming.of(node)[at];
             let Edge { from, weight, .. } = self.edges[edge as usize];
             if self.holds[edge as usize] {
+                let hold = match (edge as usize) < self.ordinary {
+                    true => Hold::After { node, distance: weight.saturating_neg() },
+                    false => Hold::Order { node },
+                };
                 let state = &mut self.nodes[from as usize];
-                state.lower = state.lower.max(time.saturating_sub(weight));
+                state.wait_until(time.saturating_sub(weight), hold);
                 state.held_by -= 1;
                 self.offer(from);
             }
@@ -175,8 +222,7 @@ impl Agenda {
                 wait.until = None;
                 let waiter = wait.waiter;
                 // It may go ahead now, not earlier.
-                let lower = &mut self.nodes[waiter as usize].lower;
-                *lower = (*lower).max(time);
+                self.nodes[waiter as usize].wait_until(time, Hold::After { node, distance: 0 });
                 self.offer(waiter);
             }
         }

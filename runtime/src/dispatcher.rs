@@ -24,6 +24,7 @@
 
 mod flight;
 mod replan;
+mod why;
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -36,10 +37,12 @@ use kirk_network::{Dispatchable, Duration, EventId, Network, Time};
 pub use replan::Adoption;
 
 use crate::agenda::Agenda;
+use crate::cause::Cause;
 use crate::execution::How;
 use crate::knowledge::{Knowledge, Known, heard_against, heard_now};
 use crate::measured::Measured;
 use crate::plan::Plan;
+use why::Causes;
 
 /// What to do with news that says more than the plan assumed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -140,6 +143,10 @@ pub struct Dispatcher {
     in_flight: Vec<InFlight>,
     dispatches: VecDeque<Dispatch>,
     fixed: VecDeque<EventId>,
+    /// For each event what decided when it was fixed.
+    causes: Causes,
+    /// What it means to be held by the origin, if the plan that is followed is not the first.
+    anew: Option<Cause>,
     /// News came that is not planned with yet, and a plan with it has been asked for.
     stale: bool,
     asked: bool,
@@ -157,7 +164,7 @@ impl Dispatcher {
         let mut dispatcher = Dispatcher::following(plan, settings, knowledge);
         let origin = dispatcher.network().origin();
         dispatcher.dispatches.push_back(Dispatch { event: origin, time: Time::ZERO });
-        dispatcher.fix(origin, 0, How::Dispatched);
+        dispatcher.fix(origin, 0, How::Dispatched, Cause::Start);
         dispatcher.activate_from_origin();
         dispatcher
     }
@@ -184,6 +191,8 @@ impl Dispatcher {
             in_flight: Vec::new(),
             dispatches: VecDeque::new(),
             fixed: VecDeque::new(),
+            causes: Causes(vec![None; network.events().len()]),
+            anew: None,
             stale: false,
             asked: false,
             broken: false,
@@ -255,7 +264,7 @@ impl Dispatcher {
                 self.happen(place.node, heard, How::Observed)
             }
             _ if self.settings.strategy == Strategy::Optimistic && self.says_more(event) => self.stale = true,
-            _ if place.heard_by != Some(event) => self.fix(event, heard, How::Observed),
+            _ if place.heard_by != Some(event) => self.fix(event, heard, How::Observed, Cause::News),
             _ => {}
         }
         Reception::Accepted
@@ -293,9 +302,9 @@ impl Dispatcher {
                     self.happen(node, time, how);
                 }
                 (_, Some((time, at)), _) if Some(time) == first => {
-                    let InFlight { event, node, due, .. } = self.in_flight.remove(at);
+                    let flight = self.in_flight.remove(at);
                     self.version += 1;
-                    self.executed(event, node, due, time);
+                    self.executed(flight, time);
                 }
                 (.., Some((time, node))) => self.execute(time, node),
                 _ => break,
@@ -458,7 +467,7 @@ impl Dispatcher {
                 (time.saturating_add(place.earliest), time.saturating_add(place.latest)),
             );
         }
-        self.fix(event, time, how);
+        self.fix(event, time, how, self.cause_of_acting(node, event, time, how));
         self.start(node, time);
     }
 
@@ -480,12 +489,14 @@ impl Dispatcher {
         }
     }
 
-    fn fix(&mut self, event: EventId, time: i64, how: How) {
+    fn fix(&mut self, event: EventId, time: i64, how: How, cause: Cause) {
         // At the moment of its own news nothing is held back.
         let heard_then = self.known(event).observed == Some(Time::from_micros(time));
-        let how = if how == How::Buffered && heard_then { How::Observed } else { how };
+        let (how, cause) =
+            if how == How::Buffered && heard_then { (How::Observed, Cause::News) } else { (how, cause) };
         if self.knowledge.fix(event, time, how) {
             self.version += 1;
+            self.causes.0[event.index()] = Some(cause);
             self.fixed.push_back(event);
         }
     }

@@ -48,6 +48,7 @@
 
 pub mod activity;
 mod agenda;
+pub mod cause;
 pub mod checkpoint;
 pub mod dispatcher;
 pub mod execution;
@@ -66,6 +67,7 @@ pub mod simulate;
 pub mod verify;
 
 pub use activity::{Handover, Scope, handovers, leave_out_natures, merge_companions, original_spelling};
+pub use cause::Cause;
 pub use checkpoint::Checkpoint;
 pub use dispatcher::{Adoption, Dispatch, Dispatcher, Missed, Reception, Settings, Strategy};
 pub use execution::{Execution, Failure, How, Outcome, Row};
@@ -77,5 +79,5 @@ pub use order::Patience;
 pub use plan::{NoPlan, Plan};
 pub use rebuild::{Rebuild, Rebuilt};
 pub use replay::{Replay, recover, replay};
-pub use simulate::{Simulation, simulate};
+pub use simulate::{Explained, Simulation, explained, simulate};
 pub use verify::{Violation, lucky, verify};

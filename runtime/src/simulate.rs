@@ -31,6 +31,23 @@ pub struct Simulation {
 /// # Errors
 /// An observation that the model says cannot happen.
 pub fn simulate(plan: &Plan, program: &str, simulation: &Simulation) -> Result<Execution, Impossible> {
+    explained(plan, program, simulation).map(|explained| explained.execution)
+}
+
+/// An execution, and beside it what knows why.
+#[derive(Clone, Debug)]
+pub struct Explained {
+    /// The record.
+    pub execution: Execution,
+    /// The dispatcher at its end, which knows what decided each time ([`Dispatcher::why`]).
+    pub dispatcher: Dispatcher,
+}
+
+/// The same, with what knows why each event was executed when it was.
+///
+/// # Errors
+/// An observation that the model says cannot happen.
+pub fn explained(plan: &Plan, program: &str, simulation: &Simulation) -> Result<Explained, Impossible> {
     let network = plan.network();
     let mut nature = Nature::new(network, simulation.nature, simulation.seed, &simulation.observations);
     let mut dispatcher = Dispatcher::new(plan.clone(), Settings::of(simulation.strategy));
@@ -73,7 +90,7 @@ pub fn simulate(plan: &Plan, program: &str, simulation: &Simulation) -> Result<E
     }
     let mut execution = record(&dispatcher, program, all_over(&dispatcher), simulation.internal, &truth);
     execution.seed = Some(simulation.seed);
-    Ok(execution)
+    Ok(Explained { execution, dispatcher })
 }
 
 /// Planning anew takes no time here.

@@ -1,8 +1,11 @@
 //! What our events go through: due, dispatched, in flight until a driver has confirmed them, executed; or too late for that.
 
+use std::cmp::Ordering;
+
 use kirk_network::{EventId, Time};
 
 use super::{Dispatch, Dispatcher, Missed};
+use crate::cause::Cause;
 use crate::execution::How;
 
 /// A dispatched event that nobody has confirmed yet.
@@ -11,6 +14,8 @@ pub(super) struct InFlight {
     pub(super) event: EventId,
     pub(super) node: u32,
     pub(super) due: i64,
+    /// What decided when it is due.
+    pub(super) cause: Cause,
     /// Since when it is, if it was confirmed before it is due: until then news may still bring it forward.
     pub(super) executed: Option<i64>,
 }
@@ -37,7 +42,7 @@ impl Dispatcher {
     pub fn handle_executed(&mut self, now: Time, event: EventId, at: Time) {
         self.now = self.now.max(now.as_micros());
         let Some(found) = self.in_flight.iter().position(|flight| flight.event == event) else { return };
-        let InFlight { node, due, .. } = self.in_flight[found];
+        let InFlight { node, due, cause, .. } = self.in_flight[found];
         self.version += 1;
         if due > self.now {
             self.in_flight[found].executed = Some(at.as_micros());
@@ -45,12 +50,13 @@ impl Dispatcher {
         }
         self.in_flight.remove(found);
         let time = self.recorded(due, at.as_micros(), self.agenda.upper(node));
-        self.executed(event, node, due, time);
+        self.executed(InFlight { event, node, due, cause, executed: None }, time);
     }
 
-    pub(super) fn executed(&mut self, event: EventId, node: u32, due: i64, time: i64) {
+    pub(super) fn executed(&mut self, flight: InFlight, time: i64) {
+        let InFlight { event, node, due, cause, .. } = flight;
         if self.in_time(due, time, node) {
-            self.fix(event, time, How::Dispatched);
+            self.fix(event, time, How::Dispatched, in_truth(cause, due, time));
             self.start(node, time);
         }
     }
@@ -92,13 +98,14 @@ impl Dispatcher {
             return;
         }
         let event = self.reduction.event_of[node as usize];
+        let cause = self.cause_of_due(node, due);
         self.version += 1;
         self.dispatches.push_back(Dispatch { event, time: Time::from_micros(due) });
         if self.settings.confirmed && self.is_carried_out(event) {
             self.agenda.take(node);
-            self.in_flight.push(InFlight { event, node, due, executed: None });
+            self.in_flight.push(InFlight { event, node, due, cause, executed: None });
         } else {
-            self.fix(event, time, How::Dispatched);
+            self.fix(event, time, How::Dispatched, in_truth(cause, due, time));
             self.start(node, time);
         }
     }
@@ -128,5 +135,14 @@ impl Dispatcher {
     pub(super) fn miss(&mut self, event: EventId, due: i64, time: i64, latest: i64) {
         let [due, time, latest] = [due, time, latest].map(Time::from_micros);
         self.missed = Some(Missed { event, time, due, latest });
+    }
+}
+
+/// What decided when an event was executed, if something decided when it was due.
+fn in_truth(cause: Cause, due: i64, time: i64) -> Cause {
+    match due.cmp(&time) {
+        Ordering::Equal => cause,
+        Ordering::Less => Cause::Late { due: Time::from_micros(due) },
+        Ordering::Greater => Cause::Closed { due: Time::from_micros(due) },
     }
 }

@@ -6,6 +6,7 @@ use kirk_network::precedence::Precedence;
 use kirk_network::{EventId, Network, Time};
 
 use super::{Dispatcher, Settings, agenda};
+use crate::cause::Cause;
 use crate::execution::How;
 use crate::knowledge::Knowledge;
 use crate::plan::Plan;
@@ -53,6 +54,7 @@ impl Dispatcher {
         };
         self.agenda = agenda(&reduction, &net, |event| self.settings.lead_of(self.is_carried_out(event)));
         self.reduction = reduction;
+        self.anew = Some(self.anew());
         self.take_up(rebuilt.now.as_micros());
         Adoption::Followed
     }
@@ -98,6 +100,7 @@ impl Dispatcher {
         let plan = Plan { network: Arc::clone(network), reduction, net, precedence };
         let mut dispatcher = Dispatcher::following(plan, settings, knowledge);
         dispatcher.version = version;
+        dispatcher.anew = Some(dispatcher.anew());
         dispatcher.take_up(planned.as_micros());
         Some(dispatcher)
     }
@@ -109,13 +112,15 @@ impl Dispatcher {
         for event in self.network.event_ids() {
             let known = *self.known(event);
             if known.settled && known.fixed.is_none() {
-                let (time, how) = match known.observed.map(Time::as_micros) {
+                let (time, how, cause) = match known.observed.map(Time::as_micros) {
                     // Lateness of ours is not held against the news.
-                    Some(heard) if self.recorded(heard, planned, planned) == heard => (heard, How::Observed),
-                    Some(_) => (planned, How::Buffered),
-                    None => (planned, How::Imagined),
+                    Some(heard) if self.recorded(heard, planned, planned) == heard => {
+                        (heard, How::Observed, Cause::News)
+                    }
+                    Some(_) => (planned, How::Buffered, self.anew()),
+                    None => (planned, How::Imagined, self.anew()),
                 };
-                self.fix(event, time, how);
+                self.fix(event, time, how, cause);
             }
         }
     }
@@ -125,7 +130,7 @@ impl Dispatcher {
         for event in self.network.event_ids() {
             let known = *self.known(event);
             if let (Some(heard), None, true) = (known.observed, known.fixed, self.is_hidden(event)) {
-                self.fix(event, heard.as_micros(), How::Observed);
+                self.fix(event, heard.as_micros(), How::Observed, Cause::News);
             }
         }
     }

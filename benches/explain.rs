@@ -1,5 +1,7 @@
 //! How long it takes to say why not, what would fix it, and how much is left.
 
+#![allow(clippy::unwrap_used, reason = "a benchmark may fail")]
+
 use std::fs;
 use std::path::Path;
 

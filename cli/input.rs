@@ -76,6 +76,8 @@ fn with_companions(file: &str, own: String) -> Result<Vec<Source>, (Source, Vec<
     let folder = Path::new(file).parent().filter(|_| file != "-").unwrap_or(Path::new(""));
     for Companion { name, span } in companions(&own) {
         let path = folder.join(&name).to_string_lossy().into_owned();
+        // A file of that name, not standard input.
+        let path = if path == "-" { "./-".to_string() } else { path };
         if !is_there && is_same_file(&path, file) {
             is_there = true;
             sources.push(Source::new(shown(file), own.as_str()));

@@ -17,7 +17,7 @@ use crate::input::{Input, load_all, without_mark};
 use crate::json::line;
 use crate::judge::too_large;
 use crate::output::{Status, complain, print, print_line};
-use crate::replace::replace;
+use crate::replace::Replacement;
 use crate::report::{Reporter, SpanJson};
 
 pub(crate) fn repair_of(arguments: &RepairOf, common: &Common) -> io::Result<Status> {
@@ -155,8 +155,18 @@ fn edit(arguments: &RepairOf, input: &Input, found: Option<&Proposals>) -> io::R
         }
         return Ok(Status::Yes);
     }
+    // All are written before the first takes the place of the old one.
+    let mut ready = Vec::new();
     for (before, after) in changed {
-        if let Err(why) = write(before, after) {
+        match prepared(before, after) {
+            Ok(prepared) => ready.push((before, prepared)),
+            Err(why) => {
+                return refuse(&format!("cannot change `{}`, so nothing is changed: {why}", before.name));
+            }
+        }
+    }
+    for (before, prepared) in ready {
+        if let Err(why) = prepared.put() {
             return refuse(&format!("cannot change `{}`, which is as it was: {why}", before.name));
         }
     }
@@ -177,10 +187,14 @@ fn patch(before: &Source, after: &Source) -> String {
         .to_string()
 }
 
-/// Puts the new text in the place of the old one, if that is what is still there.
-fn write(before: &Source, after: &Source) -> Result<(), String> {
+/// Writes the new text beside the old one, if that is what is still there.
+fn prepared(before: &Source, after: &Source) -> Result<Replacement, String> {
     if before.name == "<stdin>" {
         return Err("it came from standard input; `--diff` prints the change".to_string());
+    }
+    let about = fs::metadata(&before.name).map_err(|error| error.to_string())?;
+    if !about.is_file() || about.permissions().readonly() {
+        return Err("it is no file that may be written".to_string());
     }
     let there = fs::read_to_string(&before.name).map_err(|error| error.to_string())?;
     let rest = without_mark(&there);
@@ -188,7 +202,8 @@ fn write(before: &Source, after: &Source) -> Result<(), String> {
         return Err("somebody has changed it meanwhile".to_string());
     }
     let mark = &there[..there.len() - rest.len()];
-    replace(&before.name, &format!("{mark}{}", without_mark(&after.text))).map_err(|error| error.to_string())
+    let text = format!("{mark}{}", without_mark(&after.text));
+    Replacement::prepared(&before.name, &text).map_err(|error| error.to_string())
 }
 
 fn lines(
@@ -200,9 +215,8 @@ fn lines(
 ) -> Vec<String> {
     let mut lines = Vec::new();
     if found.proposals.is_empty() {
-        lines.push(format!(
-            "{file}: `{program}` is not controllable, and no change of what may change makes it so"
-        ));
+        lines
+            .push(format!("{file}: `{program}` is not controllable, and nothing was found that makes it so"));
         if !arguments.nature {
             lines.push("With `--nature` the durations that Nature decides may change, too.".to_string());
         }
@@ -225,11 +239,14 @@ fn lines(
             "The search was given up before its end: there may be cheaper ones.".to_string(),
         ]);
     }
-    if found.proposals.iter().any(|proposal| proposal.changes.iter().all(|change| !change.edits.is_empty())) {
-        lines.extend([
-            String::new(),
-            format!("`kirk repair {file} --apply 1` makes the first of them, `--diff` prints it as a patch."),
-        ]);
+    let can_edit = |proposal: &Proposal| proposal.changes.iter().all(|change| !change.edits.is_empty());
+    if found.proposals.iter().any(can_edit) {
+        lines.push(String::new());
+        lines.push(match file {
+            "-" => "With `--diff` the first is printed as a patch.".to_string(),
+            _ => "With `--apply 1` the first of them is made, with `--diff` it is printed as a patch."
+                .to_string(),
+        });
     }
     lines
 }

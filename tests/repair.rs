@@ -93,6 +93,29 @@ fn what_is_kept_is_not_touched_and_what_is_dear_comes_last() {
 }
 
 #[test]
+fn what_is_written_once_is_kept_with_all_that_reads_it() {
+    let file = "tests/rmpl/gallery/shared-bound.rmpl";
+    let told = |options: &[&str]| stdout(&kirk(&[&["repair", file], options].concat()));
+    assert!(told(&[]).contains("at least 5 s instead of 10 s for `heat`"), "{}", told(&[]));
+    // The second call is `heat#2`, and its bound is that of the first.
+    let kept = told(&["--keep", "heat#2"]);
+    assert!(!kept.contains("for `heat`") && kept.contains("at most 10 s instead of 5 s"), "{kept}");
+}
+
+#[test]
+fn a_file_that_may_not_be_written_is_left_alone() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("m.rmpl");
+    fs::copy("tests/rmpl/gallery/deadline.rmpl", &file).unwrap();
+    fs::set_permissions(&file, fs::Permissions::from_mode(0o444)).unwrap();
+    let output = kirk(&["repair", file.to_str().unwrap(), "--apply", "1"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("nothing is changed"), "{}", stderr(&output));
+    assert_eq!(fs::read(&file).unwrap(), fs::read("tests/rmpl/gallery/deadline.rmpl").unwrap());
+}
+
+#[test]
 fn a_patch_says_what_applying_does_and_changes_nothing() {
     let file = "tests/rmpl/gallery/late-news.rmpl";
     let before = fs::read_to_string(file).unwrap();

@@ -23,7 +23,7 @@ const NOT_ALONE: &str = "No change of one amount alone is enough: several have t
      joined. `kirk repair` looks for that.";
 
 /// Nothing is allowed too little here.
-const CIRCLE: &str = "No amount helps: what comes before what has to change. `kirk repair` tries which order could be left out.";
+const CIRCLE: &str = "No one amount helps: what comes before what has to change. `kirk repair` tries which order could be left out.";
 
 /// A "no" that a cleverer use of news might turn.
 const CONSERVATIVE: &str = "This \"no\" rests on a chain of activities of which the first is heard late; a cleverer use of that news \
@@ -33,6 +33,8 @@ const CONSERVATIVE: &str = "This \"no\" rests on a chain of activities of which 
 const MOST: usize = 10;
 /// How many are counted.
 const COUNTED: usize = 100;
+/// With more events than this a verdict takes its time.
+const LARGE: usize = 1_000;
 
 /// What is to be explained: a network that is not controllable, where it comes from, and how.
 #[derive(Clone, Copy, Debug)]
@@ -62,7 +64,9 @@ impl<'a> Explain<'a> {
     /// # Errors
     /// [`TooLarge`] if the durations add up to more than 64-bit microseconds can hold.
     pub fn all(&self) -> Result<Vec<Diagnostic>, TooLarge> {
-        let found = conflicts(self.network, COUNTED)?;
+        // Each costs a verdict: of large missions no more are looked for than are told.
+        let counted = if self.network.events().len() > LARGE { MOST + 1 } else { COUNTED };
+        let found = conflicts(self.network, counted)?;
         let told = found.len().min(MOST);
         let mut diagnostics = Vec::new();
         for (index, conflict) in found.iter().take(MOST).enumerate() {
@@ -74,7 +78,7 @@ impl<'a> Explain<'a> {
         }
         if found.len() > told {
             let more = found.len() - told;
-            let least = if found.len() == COUNTED { "at least " } else { "" };
+            let least = if found.len() == counted { "at least " } else { "" };
             let text = format!("{least}{more} more conflicts are not shown.");
             if let Some(last) = diagnostics.last_mut() {
                 last.help = Some(last.help.take().map_or(text.clone(), |help| format!("{help}\n{text}")));
@@ -120,7 +124,7 @@ impl<'a> Explain<'a> {
         if theory {
             help.extend(wrapped("", &format!("The time they leave: {} < 0.", total(conflict))));
         }
-        let enough = amounts::enough_alone(conflict, rest, origins, sources);
+        let enough = amounts::enough_alone(conflict, network, rest, origins, sources);
         help.extend(advice(conflict, network, origins, enough.as_deref(), is_one_of_several));
         if conflict.conservative {
             help.extend(wrapped("", CONSERVATIVE));
@@ -157,7 +161,14 @@ fn what_kind(conflict: &Conflict, network: &Network, origins: &Origins) -> &'sta
 /// True if every step leads on, and none back.
 fn is_circle(conflict: &Conflict) -> bool {
     let leads_back = |part| {
-        matches!(part, Part::RequirementUpper(_) | Part::LinkLower(_) | Part::DelayMin(_) | Part::Join(_))
+        matches!(
+            part,
+            Part::RequirementUpper(_)
+                | Part::LinkLower(_)
+                | Part::DelayMin(_)
+                | Part::Join(_)
+                | Part::AfterOrigin
+        )
     };
     !conflict.members.iter().any(|share| leads_back(share.part))
 }

@@ -12,7 +12,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use kirk_network::conflicts::conflicts;
 use kirk_network::least::could_settle;
-use kirk_network::repair::{Allowed, Ended, Options, Repairs, repairs};
+use kirk_network::repair::{Allowed, Ended, Options, Repair, Repairs, repairs};
 use kirk_network::stnu::TooLarge;
 use kirk_network::vary::{Change, Knob};
 use kirk_network::{Bound, Duration, Network, Part};
@@ -125,9 +125,15 @@ pub fn proposals(
         let changes: Option<Vec<Changed>> = changes.iter().map(changed).collect();
         changes.map(|changes| Proposal { changes })
     };
-    let mut found: Vec<Proposal> = repairs.iter().filter_map(|it| proposal(&it.changes)).collect();
-    let rest = wishes.limit.saturating_sub(found.len());
-    found.extend(structure::proposals(network, origins, sources, wishes)?.into_iter().take(rest));
+    // That something takes no time at all is the last thing to propose.
+    let (nothing, some): (Vec<&Repair>, Vec<&Repair>) = repairs.iter().partition(|it| takes_no_time(it));
+    let of_amounts = |repairs: Vec<&Repair>| -> Vec<Proposal> {
+        repairs.into_iter().filter_map(|it| proposal(&it.changes)).collect()
+    };
+    let mut found = of_amounts(some);
+    found.extend(structure::proposals(network, origins, sources, wishes)?);
+    found.extend(of_amounts(nothing));
+    found.truncate(wishes.limit);
     // What has no part in the conflicts cannot settle them, which goes without saying.
     let mut blamed: BTreeSet<Part> = BTreeSet::new();
     for conflict in conflicts(network, wishes.limit)? {
@@ -139,6 +145,13 @@ pub fn proposals(
     };
     let not_alone = not_alone.iter().filter_map(alone).collect();
     Ok(Some(Proposals { proposals: found, not_alone, gave_up: ended == Ended::OutOfRounds }))
+}
+
+/// True if something that takes time is to take none.
+fn takes_no_time(repair: &Repair) -> bool {
+    let zero = Bound::Finite(Duration::ZERO);
+    let is_least = |change: &Change| matches!(change.knob.parts()[0], Part::RequirementLower(_));
+    repair.changes.iter().any(|change| change.to == zero && is_least(change))
 }
 
 /// An amount in the unit that is written at a place.
@@ -189,15 +202,18 @@ fn levers<'a>(
             continue;
         };
         let place = origin.places[which];
-        if is_changeable(part, network, origin, sources)
-            && !wishes.keep.iter().any(|name| is_called(origin, name))
-        {
+        if is_changeable(part, network, origin, sources) {
             written.entry((place, Kind::of(part))).or_default().push(part);
         }
     }
     let lever = |((place, _), parts): ((Span, Kind), Vec<Part>)| {
         let part = parts[0];
         let (origin, _) = origins.of(part)?;
+        // What is written once is all that is read there.
+        let all: Vec<&Origin> = parts.iter().filter_map(|part| Some(origins.of(*part)?.0)).collect();
+        if all.iter().any(|origin| wishes.keep.iter().any(|name| is_called(origin, name))) {
+            return None;
+        }
         let knob = Knob::together(parts)?;
         let value = knob.value(network);
         // One text with several values, by an argument, is not to be changed in one place.
@@ -208,7 +224,7 @@ fn levers<'a>(
         let knob = if keeps_order(part, network) { knob.limited(Duration::ZERO) } else { knob };
         let unit = edit::step(place, value, sources);
         let mut allowed = Allowed::relative(network, knob.clone(), unit);
-        allowed.weight = weight(allowed.weight, part, origin, wishes);
+        allowed.weight = weight(allowed.weight, part, &all, wishes);
         Some((knob, Lever { allowed, origin, place }))
     };
     written.into_iter().filter_map(lever).collect()
@@ -270,20 +286,23 @@ fn is_called(origin: &Origin, name: &str) -> bool {
 }
 
 /// What a microsecond costs.
-fn weight(relative: u64, part: Part, origin: &Origin, wishes: &Wishes) -> u64 {
+fn weight(relative: u64, part: Part, origins: &[&Origin], wishes: &Wishes) -> u64 {
     const DEAR: u128 = 10;
     let is_preferred = match wishes.prefer {
         None => true,
         Some(Preference::News) => matches!(part, Part::DelayMax(_)),
-        Some(Preference::Durations) => origin.kind == OriginKind::Duration,
+        Some(Preference::Durations) => origins[0].kind == OriginKind::Duration,
         Some(Preference::Deadlines) => {
-            let between =
-                matches!(origin.kind, OriginKind::Constraint | OriginKind::Between | OriginKind::Requirement);
+            let between = matches!(
+                origins[0].kind,
+                OriginKind::Constraint | OriginKind::Between | OriginKind::Requirement
+            );
             between && !matches!(part, Part::DelayMax(_))
         }
     };
     let mut weight = u128::from(relative) * if is_preferred { 1 } else { DEAR };
-    for (_, millionths) in wishes.weights.iter().filter(|(name, _)| is_called(origin, name)) {
+    let concerns = |name: &str| origins.iter().any(|origin| is_called(origin, name));
+    for (_, millionths) in wishes.weights.iter().filter(|(name, _)| concerns(name)) {
         weight = weight.saturating_mul(u128::from(*millionths)) / 1_000_000;
     }
     u64::try_from(weight).unwrap_or(u64::MAX).max(1)
@@ -291,7 +310,8 @@ fn weight(relative: u64, part: Part, origin: &Origin, wishes: &Wishes) -> u64 {
 
 /// A change, as part of a sentence: "at most 45 s instead of 40 s for `drive`".
 fn title(change: &Change, origin: &Origin, unit: edit::Unit) -> String {
-    let to = change.to.finite().map_or("any time".to_string(), |to| unit.say(to));
+    let Some(to) = change.to.finite() else { return format!("no bound {}", origin.about()) };
+    let to = unit.say(to);
     let instead =
         change.from.finite().map_or(String::new(), |from| format!(" instead of {}", unit.say(from)));
     let of = origin.about();

@@ -66,7 +66,7 @@ fn orders_in_a_circle_are_no_matter_of_amounts() {
     (between (end inspect) (start hold) (simple-temporal :lower-bound 0))))
 ",
     );
-    assert!(told.contains("go round in a circle") && told.contains("No amount helps"), "{told}");
+    assert!(told.contains("go round in a circle") && told.contains("No one amount helps"), "{told}");
 }
 
 #[test]

@@ -6,12 +6,15 @@
 mod zero;
 
 use std::collections::{BTreeMap, HashMap, HashSet, VecDeque};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration as Real, Instant};
 
 use kirk_network::{Duration, EventId, Time};
 use kirk_runtime::journal::{Line, Record, Trace};
-use kirk_runtime::{Answer, Execution, Executive, Handled, Input, Output, Reason, Sending, Why};
+use kirk_runtime::{
+    Answer, Execution, Executive, Handled, Input, Output, Reason, Rebuild, Rebuilt, Sending, Why,
+};
 
 use crate::clock::Clock;
 use crate::desk::{AnswerNews, Desk, Ignored, Message, Reply, Ticket};
@@ -79,6 +82,12 @@ impl Ready {
         if work.stopped.is_none() {
             work.go(&inbox);
         }
+        if work.executive.is_over() {
+            // It has come to its end just so.
+            work.stopped = None;
+            // A dispatch that could not leave in time ends the mission, and that is to be on record.
+            work.perform();
+        }
         // Whoever still wants to hand something in is not to wait for somebody to take it.
         drop(inbox);
         work.finish_journal();
@@ -135,7 +144,7 @@ struct Loop {
     /// Why the journal could not be written, if it could not.
     lost: Option<String>,
     /// Who is answered when it is.
-    replies: VecDeque<(Ticket, AnswerNews, Reply<AnswerNews>)>,
+    replies: VecDeque<(Ticket, Vec<EventId>, AnswerNews, Reply<AnswerNews>)>,
     /// What is waited for before the clock runs.
     waits: Option<Waits>,
     /// The dispatch that the driver has confirmed before it was time zero.
@@ -169,12 +178,6 @@ impl Loop {
         }
         if self.stopped.is_some() {
             self.hear_out(inbox);
-        }
-        if self.executive.is_over() {
-            // It has come to its end just so.
-            self.stopped = None;
-            // A dispatch that could not leave in time ends the mission, and that is to be on record.
-            self.perform();
         }
     }
 
@@ -277,19 +280,28 @@ impl Loop {
         mut answer: AnswerNews,
         reply: Reply<AnswerNews>,
     ) {
+        let mut heard = Vec::new();
         for (name, event) in events {
             let input = Input::news(self.executive.network(), event);
             match self.happens(arrived, input).answer {
                 Answer::Accepted => {
-                    self.desk.set_heard(event);
+                    heard.push(event);
                     answer.accepted.push(name);
                 }
-                Answer::Ignored(why) => answer.ignored.push(self.ignored(arrived, name, why)),
+                Answer::Ignored(why) => {
+                    // What was heard a moment ago may not be on the disk either.
+                    heard.extend((why == Why::HeardBefore).then_some(event));
+                    answer.ignored.push(self.ignored(arrived, name, why));
+                }
             }
         }
         self.perform();
-        let ticket = if answer.accepted.is_empty() { 0 } else { self.sync() };
-        self.replies.push_back((ticket, answer, reply));
+        if self.lost.is_some() {
+            // It is not recorded, so nobody is told that it was heard.
+            return;
+        }
+        let ticket = if heard.is_empty() { 0 } else { self.sync() };
+        self.replies.push_back((ticket, heard, answer, reply));
         self.let_leave();
     }
 
@@ -306,8 +318,12 @@ impl Loop {
     /// Has what news calls for planned anew, elsewhere.
     fn plan_anew(&mut self, now: Time) {
         if let Some(rebuild) = self.executive.poll_rebuild(now) {
-            let desk = self.desk.clone();
-            std::thread::spawn(move || desk.rebuilt(rebuild.run()));
+            let (desk, work) = (self.desk.clone(), rebuild.clone());
+            let planning = move || desk.rebuilt(planned(work));
+            if std::thread::Builder::new().spawn(planning).is_err() {
+                // The machine has no more threads: late is better than never.
+                self.desk.rebuilt(planned(rebuild));
+            }
         }
     }
 
@@ -374,7 +390,9 @@ impl Loop {
             }
         }
         while self.replies.front().is_some_and(|(ticket, ..)| *ticket <= safe) {
-            if let Some((_, answer, reply)) = self.replies.pop_front() {
+            if let Some((_, heard, answer, reply)) = self.replies.pop_front() {
+                // From now on the desk answers by itself that it was heard: that is true of what is safe only.
+                heard.into_iter().for_each(|event| self.desk.set_heard(event));
                 reply(answer);
             }
         }
@@ -494,4 +512,10 @@ impl Loop {
         serde_json::to_string(&execution)
             .unwrap_or_else(|error| unreachable!("a record has only strings and numbers: {error}"))
     }
+}
+
+/// The plan, or that there is none: a mission does not wait for ever for one that cannot be made.
+fn planned(rebuild: Rebuild) -> Rebuilt {
+    let work = AssertUnwindSafe(|| rebuild.clone().run());
+    catch_unwind(work).unwrap_or_else(|_| rebuild.without_plan())
 }

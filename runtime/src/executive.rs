@@ -260,11 +260,6 @@ impl Executive {
         Handled { answer, record: changed.then_some(record) }
     }
 
-    /// True if a dispatch is with the driver or was.
-    pub fn is_order(&self, id: &str) -> bool {
-        self.orders.iter().any(|order| order.id == id)
-    }
-
     fn timeout(&mut self, now: Time) {
         if self.over {
             return;
@@ -313,7 +308,7 @@ impl Executive {
         self.outputs.pop_front()
     }
 
-    /// When to call [`Input::Timeout`] is to be handled if nothing is heard before.
+    /// When [`Input::Timeout`] is to be handled if nothing is heard before.
     pub fn poll_timeout(&mut self) -> Option<Time> {
         if self.over {
             return None;
@@ -401,7 +396,9 @@ impl Executive {
             }
         }
         for at in 0..self.orders.len() {
-            self.look_after(at, now);
+            if !self.over {
+                self.look_after(at, now);
+            }
         }
         self.miss_news(now);
         if self.over {

@@ -53,8 +53,8 @@ impl Rebuild {
         }
     }
 
-    /// What is left when it is known that there is no plan.
-    pub(crate) fn without_plan(self) -> Rebuilt {
+    /// What is left when it is known that there is no plan, as a journal says, or when none can be made.
+    pub fn without_plan(self) -> Rebuilt {
         Rebuilt { plan: None, now: self.progress.now, version: self.version }
     }
 }

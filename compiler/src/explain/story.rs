@@ -18,12 +18,16 @@ pub(super) fn story(
     origins: &Origins,
     sources: &[Source],
 ) -> Option<Vec<String>> {
-    let steps = walk(network, conflict)?;
+    let mut steps = walk(network, conflict)?;
+    begin_with_a_need(&mut steps);
     let is_circle = is_circle(conflict);
     let needed = sum(steps.iter().map(|step| step.needs).filter(|needs| *needs > Duration::ZERO));
     let there = -sum(steps.iter().map(|step| step.needs).filter(|needs| *needs < Duration::ZERO));
     let told = steps.iter().filter(|step| is_circle || step.needs != Duration::ZERO);
-    let texts: Vec<String> = told.filter_map(|step| say(step, origins, sources)).collect();
+    let mut texts: Vec<String> = told.filter_map(|step| say(step, origins, sources)).collect();
+    if let Some(first) = texts.first_mut() {
+        *first = first.trim_start_matches("but ").to_string();
+    }
     if texts.is_empty() {
         return None;
     }
@@ -38,6 +42,18 @@ pub(super) fn story(
         lines.push(format!("That needs {needed} s, and {there} s are there."));
     }
     Some(lines)
+}
+
+/// What is needed comes first, and what is there for it after that.
+fn begin_with_a_need(steps: &mut [Step]) {
+    let is_need = |step: &Step| step.needs > Duration::ZERO;
+    let is_there = |step: &Step| step.needs < Duration::ZERO;
+    let before = |at: usize| steps[(at + steps.len() - 1) % steps.len()];
+    if !steps.first().is_some_and(is_need)
+        && let Some(first) = (0..steps.len()).find(|&at| is_need(&steps[at]) && is_there(&before(at)))
+    {
+        steps.rotate_left(first);
+    }
 }
 
 fn sum(amounts: impl Iterator<Item = Duration>) -> Duration {

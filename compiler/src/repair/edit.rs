@@ -25,6 +25,9 @@ impl Unit {
     /// An amount in words: `90 s`, `1.5 minutes`.
     pub(super) fn say(self, amount: Duration) -> String {
         match (self.word, self.number(amount)) {
+            (Some(word), Some(number)) if number == SECOND => {
+                format!("{number} {}", word.strip_suffix('s').unwrap_or(word))
+            }
             (Some(word), Some(number)) => format!("{number} {word}"),
             _ => format!("{amount} s"),
         }
@@ -67,9 +70,11 @@ pub(super) fn step(place: Span, value: Bound, sources: &[Source]) -> Duration {
     const LARGE: i64 = 600 * SECOND.as_micros();
     let unit = unit(place, sources).micros;
     let unit = if unit > LARGE { unit / 10 } else { unit };
-    let value = value.finite().unwrap_or_default().as_micros();
-    let steps = std::iter::successors(Some(unit), |step| (step % 10 == 0 && *step > 1).then_some(step / 10));
-    let fits = steps.into_iter().find(|step| value % step == 0);
+    let value = value.finite().unwrap_or_default().as_micros().abs();
+    let mut steps =
+        std::iter::successors(Some(unit), |step| (step % 10 == 0 && *step > 1).then_some(step / 10));
+    // A step that is more than a fifth of the amount would be a leap.
+    let fits = steps.find(|step| value % step == 0 && (value == 0 || *step <= value / 5));
     Duration::from_micros(fits.unwrap_or(1))
 }
 
@@ -100,7 +105,15 @@ pub(super) fn edits(change: &Change, network: &Network, origin: &Origin, sources
     let part = change.knob.parts()[0];
     let Some(to) = change.to.finite() else { return Vec::new() };
     let mut edits: Vec<Edit> = edit(part, change.from, to, origin, sources).into_iter().collect();
-    // A shortest delay follows a longest one that becomes less.
+    // A shortest delay follows a longest one that becomes less. Where one text stands for several there is no such edit.
+    let least = |part: &Part| match *part {
+        Part::DelayMax(link) => Some(network.contingents()[link].delay.min),
+        _ => None,
+    };
+    let shortest: Vec<Duration> = change.knob.parts().iter().filter_map(least).collect();
+    if shortest.iter().any(|least| *least > to) && shortest.iter().any(|least| *least != shortest[0]) {
+        return Vec::new();
+    }
     if let Part::DelayMax(link) = part
         && let least = network.contingents()[link].delay.min
         && least > to

@@ -152,7 +152,12 @@ pub fn slack(operator: Span, sources: &[Source]) -> Option<Edit> {
 fn around(span: Span, sources: &[Source]) -> Option<Span> {
     let form = innermost(span, sources)?.span;
     let before = sources.get(form.source as usize)?.text.get(..form.start as usize)?;
-    Some(Span { start: before.trim_end().len() as u32, ..form })
+    let start = match before.trim_end().rsplit('\n').next() {
+        // What comes after is not to become part of a comment.
+        Some(line) if line.contains(';') => before.trim_end_matches([' ', '\t']).len(),
+        _ => before.trim_end().len(),
+    };
+    Some(Span { start: start as u32, ..form })
 }
 
 /// The innermost list that a place is inside of.

@@ -64,6 +64,10 @@ impl Loop {
             self.check_journal();
             let now = Instant::now();
             if now >= deadline {
+                if self.stopped.is_some() {
+                    // It can still begin: whoever goes on asks again.
+                    return;
+                }
                 let last = if last.is_empty() { "it has not answered" } else { &last };
                 return self.give_up(&first.name, within, last);
             }
@@ -74,8 +78,8 @@ impl Loop {
             }
             let wake = if asked || !safe { deadline } else { deadline.min(again) };
             match inbox.recv_timeout((wake - now).min(LONGEST_SLEEP)) {
-                Ok(Message::Executed { id, ago }) if id == first.id => return self.begin(id, ago),
-                Ok(Message::Failed { id, reason, .. }) if id == first.id => {
+                Ok(Message::Executed { id, ago }) if asked && id == first.id => return self.begin(id, ago),
+                Ok(Message::Failed { id, reason, .. }) if asked && id == first.id => {
                     let wait = PATIENCE.0.saturating_mul(1 << (attempts - 1).min(10)).min(PATIENCE.1);
                     (asked, again) = (false, Instant::now() + wait);
                     if reason != last {

@@ -17,6 +17,9 @@ impl Executive {
         }
         // What was due before comes before; at one time Nature comes first.
         self.timeout(arrived.saturating_sub(MICROSECOND));
+        if self.over {
+            return Answer::Ignored(Why::Over);
+        }
         if self.dispatcher.is_in_flight(self.dispatcher.root(event)) {
             self.held.push((arrived, event));
             self.changes += 1;

@@ -437,6 +437,8 @@ impl Loop {
         if self.journal.is_none() || self.driver.is_none() {
             return;
         }
+        // The executive is a value: what will be due is found by trying it on a copy. To announce what then does not happen
+        // does no harm; only what has a record of its own counts.
         let mut ahead = self.executive.clone();
         ahead.handle(next, Input::Timeout {});
         let mut ids = Vec::new();

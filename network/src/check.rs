@@ -126,6 +126,9 @@ fn minimise(network: &Network, found: Conflict) -> Result<Conflict, TooLarge> {
         }
     }
     let Some(mut smallest) = restricted_conflict(network, &kept)? else { return Ok(found) };
+    // Deletion filter (J. W. Chinneck, E. W. Dravnieks, Locating minimal infeasible constraint sets in linear programs,
+    // 1991). One pass is enough: with less to keep nothing gets harder, so what could not be left out of more cannot be
+    // left out of less. The last conflict found is kept, since the cycle may have become another one.
     if kept.len() <= MOST_MEMBERS_TO_TRY {
         for member in kept.clone().into_iter().rev() {
             kept.remove(&member);

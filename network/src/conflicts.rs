@@ -22,6 +22,7 @@ use crate::vary::Knob;
 pub fn conflicts(network: &Network, most: usize) -> Result<Vec<Conflict>, TooLarge> {
     let mut found = Vec::new();
     let mut rest = network.clone();
+    // It ends: every round makes at least one finite bound infinite.
     while found.len() < most
         && let Verdict::Uncontrollable(conflict) = check(&rest)?
     {

@@ -462,6 +462,9 @@ impl<'a> Search<'a> {
         let here = self.stnu.links[link as usize];
         let activation = here.activation;
         self.improved.clear();
+        // Only now: these edges lead to A, and a search that passes A never gets here, so none of them could have served
+        // it. Expanded nodes are those closer than the width. Nature's own do not wait; the search went on by their lower-
+        // case edge. An edge from A to A that is not negative says nothing.
         for at in 0..self.reached.len() {
             let node = self.reached[at];
             let Node { distance, expanded, ending, potential, .. } = *self.node(node);

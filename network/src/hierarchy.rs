@@ -25,6 +25,8 @@ type Lanes = [i64; LANES];
 
 /// The longest path: one that is longer than this is beyond [`LIMIT`] in truth, so it says nothing and is left out (see
 /// `Stnu::horizon`).
+// Potentials are within LIMIT, so length and true distance differ by 2 LIMIT at most: beyond 4 LIMIT the distance is beyond
+// 2 LIMIT. The largest sums formed stay below 16 LIMIT = 2^63.
 const FARTHEST: i64 = 4 * LIMIT;
 
 /// No path. More than the sum of any two lengths.

@@ -122,6 +122,7 @@ fn ranks(nodes: u32, pairs: &[(u32, u32)], key: impl Fn(u32) -> u32) -> Vec<u32>
         .map(|&(later, earlier)| (component[later as usize], component[earlier as usize]))
         .filter(|(later, earlier)| later != earlier)
         .collect();
+    // A. B. Kahn, 1962; the heap makes the order depend on the keys alone, not on how the components are numbered.
     let following = Rows::new(first.len() as u32, between.iter().map(|&(_, earlier)| earlier));
     let mut behind = vec![0_u32; first.len()];
     between.iter().for_each(|&(later, _)| behind[later as usize] += 1);

@@ -387,6 +387,8 @@ impl<'a> Reducer<'a> {
                 let Some((from, to, weight)) = edge else { continue };
                 let weight = weight.as_micros();
                 if let Some(worst) = self.trees.nature_alone(self.network, from, to)? {
+                    // Nature alone decides this one. While executing it is not asked again: the plan has proven it, or news
+                    // against the model has broken it, and no plan mends that.
                     if worst > weight && self.progress.is_none() {
                         return Err(ReduceError::Never(Violation { source, from, to }));
                     }

@@ -183,6 +183,10 @@ impl Agenda {
 
     /// Executes a node, or says that a contingent node has happened. Returns the links this starts.
     pub(crate) fn execute(&mut self, node: u32, time: i64) -> Vec<u32> {
+        // Between calls `lower` and `upper` are the tightest that executed neighbours say, and `held_by` counts what must
+        // come first and has not. Neighbours are enough, as the network is dispatchable (Muscettola 1998): a bound from
+        // afar has come to a neighbour by then. The edges passed over say nothing: an incoming one of weight >= 0 bounds
+        // from below by the past; the target of an outgoing negative one has been executed, for it held us.
         self.nodes[node as usize].executed = Some(time);
         for at in 0..self.outgoing.of(node).len() {
             let Edge { to, weight, .. } = self.edges[self.outgoing.of(node)[at] as usize];

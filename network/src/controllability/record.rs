@@ -30,6 +30,8 @@ impl Search<'_> {
 
     /// The search of the last link in progress has come back to the activation of an earlier one.
     pub(super) fn close_cycle(&self, progress: &[(u32, Vec<Move>)], again: u32) -> Vec<Move> {
+        // In progress are l1..ln, and the search of each ended at the activation of the next: its way, then its upper-case
+        // edge. From the last back to the first they join; ln closes the cycle, having come upon the activation of l1.
         let mut cycle = Vec::new();
         let from = progress.iter().position(|&(link, _)| link == again).unwrap_or_default();
         for (at, (link, way)) in progress.iter().enumerate().skip(from).rev() {

@@ -119,6 +119,7 @@ impl Left {
         for first in into {
             // The node itself is an inner one.
             let least = first.least.min(first.length - potential);
+            // A way back to where it came from is a cycle, never negative, and on no shortest path.
             for second in out.iter().filter(|second| second.end != first.end) {
                 let length = first.length + second.length;
                 if length <= FARTHEST {
@@ -148,6 +149,7 @@ impl Left {
                 let place = self.place[way.end as usize] as usize;
                 if place < kept && ways[place].end == way.end {
                     let known = &mut ways[place];
+                    // Of equals the one by an earlier node: domination asks for the least over all shortest paths.
                     if (way.length, way.least) < (known.length, known.least) {
                         *known = way;
                     }

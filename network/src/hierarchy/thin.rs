@@ -31,6 +31,8 @@ impl Thinning {
 
     /// Shortens the ways of a node by paths of two, by way of another node of higher rank.
     fn shorten(&mut self, rank: usize, ways: &mut Ways, back: &Ways) {
+        // Only triangles over higher ranks: elimination has closed those over lower ones. The ways of the middle are final,
+        // as it had its turn. A way as long as a path stays, because its `least` counts.
         for way in ways.of(rank) {
             self.length[way.end as usize] = way.length;
         }

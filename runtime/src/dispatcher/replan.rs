@@ -41,6 +41,8 @@ impl Dispatcher {
 
     /// Goes on with a new plan, or without one.
     pub fn handle_rebuilt(&mut self, rebuilt: Rebuilt) -> Adoption {
+        // The version proves that nothing was dispatched, fixed or heard since the question; time alone may have passed.
+        // What the new plan had due in that time is done by the timeout that follows.
         self.asked = false;
         if !self.is_current(&rebuilt) {
             return Adoption::TooLate;

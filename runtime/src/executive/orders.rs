@@ -150,6 +150,8 @@ impl Executive {
             self.changes += 1;
             self.send(at);
         } else if let Some(latest) = latest.filter(|&latest| now < latest && latest < again) {
+            // Not counted as a change, so not recorded: it follows from the order and its window alone, and a repetition
+            // comes to the same at the next input.
             // One last time while it is open.
             self.orders[at].state = State::Waiting(latest);
         } else if let Some(closes) = closes.filter(|&closes| closes < again) {

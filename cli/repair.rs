@@ -22,6 +22,7 @@ use crate::report::{Reporter, SpanJson};
 
 pub(crate) fn repair_of(arguments: &RepairOf, common: &Common) -> io::Result<Status> {
     let mut input = load_all(&arguments.files, &arguments.selection);
+    let file = arguments.files.join(" ");
     let wishes = match wishes(arguments, &input) {
         Ok(wishes) => wishes,
         Err(wrong) => return refuse(&wrong),
@@ -29,7 +30,12 @@ pub(crate) fn repair_of(arguments: &RepairOf, common: &Common) -> io::Result<Sta
     let found = match (&input.network, input.origins()) {
         (Some(network), Some(origins)) => proposals(network, origins, &input.sources, &wishes),
         _ => {
-            Reporter::new(&input.sources).show(&input.diagnostics, common)?;
+            let reporter = Reporter::new(&input.sources);
+            reporter.show(&input.diagnostics, common)?;
+            if arguments.format == TextOrJson::Json {
+                let nothing = RepairJson { controllable: None, ..RepairJson::new(&file, None, &reporter) };
+                print(&line(&nothing)?)?;
+            }
             return Ok(Status::Wrong);
         }
     };
@@ -44,7 +50,6 @@ pub(crate) fn repair_of(arguments: &RepairOf, common: &Common) -> io::Result<Sta
     if arguments.apply.is_some() || arguments.diff {
         return edit(arguments, &input, found.as_ref());
     }
-    let file = arguments.files.join(" ");
     let reporter = Reporter::new(&input.sources);
     match (arguments.format, &found) {
         (TextOrJson::Json, _) => print(&line(&RepairJson::new(&file, found.as_ref(), &reporter))?)?,
@@ -255,7 +260,7 @@ fn lines(
 struct RepairJson<'a> {
     format: &'static str,
     file: &'a str,
-    controllable: bool,
+    controllable: Option<bool>,
     repairs: Vec<ProposalJson<'a>>,
     not_alone: Vec<PlaceJson<'a>>,
     gave_up: bool,
@@ -323,7 +328,7 @@ impl<'a> RepairJson<'a> {
         RepairJson {
             format: "kirk-repair/1",
             file,
-            controllable: found.is_none(),
+            controllable: Some(found.is_none()),
             repairs: repairs.collect(),
             not_alone: not_alone.map(|(what, span)| PlaceJson { what, place: spot(*span) }).collect(),
             gave_up: found.is_some_and(|found| found.gave_up),

@@ -93,6 +93,24 @@ fn what_is_kept_is_not_touched_and_what_is_dear_comes_last() {
 }
 
 #[test]
+fn what_a_negative_bound_says_is_told_the_way_people_say_it() {
+    let network = r#"{"format": "kirk-network/1", "origin": "z", "events": ["z", "a", "b"],
+        "requirements": [{"from": "b", "to": "a", "upper": -5}, {"from": "b", "to": "a", "lower": -3}]}"#;
+    let output = kirk_with_input(&["repair", "-"], network.as_bytes());
+    let told = stdout(&output);
+    assert!(told.contains("at least 3 s instead of 5 s from `a` to `b`"), "{told}");
+    assert!(told.contains("at most 5 s instead of 3 s from `a` to `b`"), "{told}");
+}
+
+#[test]
+fn what_cannot_be_read_is_neither_yes_nor_no() {
+    let output = kirk_with_input(&["repair", "-", "--format", "json"], b"(((");
+    assert_eq!(output.status.code(), Some(2));
+    let document: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!((&document["format"], &document["controllable"]), (&json!("kirk-repair/1"), &Value::Null));
+}
+
+#[test]
 fn what_is_written_once_is_kept_with_all_that_reads_it() {
     let file = "tests/rmpl/gallery/shared-bound.rmpl";
     let told = |options: &[&str]| stdout(&kirk(&[&["repair", file], options].concat()));

@@ -78,6 +78,15 @@ impl Origin {
             (_, None) => format!("for {}", self.subject),
         }
     }
+
+    /// From where to where a requirement of a file reaches the other way round: what is said of it with a negative bound, people
+    /// say with a positive one from the later event to the earlier.
+    pub(crate) fn reversed(&self) -> Option<String> {
+        match (self.kind, &self.names[..]) {
+            (OriginKind::Requirement, [_, from, to]) => Some(format!("from `{to}` to `{from}`")),
+            _ => None,
+        }
+    }
 }
 
 impl Origins {

@@ -310,6 +310,14 @@ fn weight(relative: u64, part: Part, origins: &[&Origin], wishes: &Wishes) -> u6
 
 /// A change, as part of a sentence: "at most 45 s instead of 40 s for `drive`".
 fn title(change: &Change, origin: &Origin, unit: edit::Unit) -> String {
+    if let (Some(reversed), Some(from), Some(to)) =
+        (origin.reversed(), change.from.finite(), change.to.finite())
+        && from.max(to) <= Duration::ZERO
+    {
+        let is_lower = matches!(change.knob.parts()[0], Part::RequirementLower(_));
+        let word = if is_lower { "at most" } else { "at least" };
+        return format!("{word} {} instead of {} {reversed}", unit.say(-to), unit.say(-from));
+    }
     let Some(to) = change.to.finite() else { return format!("no bound {}", origin.about()) };
     let to = unit.say(to);
     let instead =

@@ -72,8 +72,7 @@ impl<'a> Explain<'a> {
         for (index, conflict) in found.iter().take(MOST).enumerate() {
             // What settles one is seen when the others are out of the way.
             let others = found.iter().enumerate().filter(|(other, _)| *other != index);
-            let rest =
-                others.fold(self.network.clone(), |rest, (_, other)| without(&rest, other).unwrap_or(rest));
+            let rest = without(self.network, others.map(|(_, other)| other));
             diagnostics.push(self.told(conflict, &rest, found.len() > 1));
         }
         if found.len() > told {

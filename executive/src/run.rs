@@ -207,13 +207,15 @@ impl Loop {
         self.perform();
     }
 
-    /// Something happens to the executive, and what belongs in the journal of it is put there.
-    fn happens(&mut self, at: Time, input: Input) -> Handled {
-        let handled = self.executive.handle(at, input);
-        if let Some(input) = &handled.record {
-            self.record(at, Record::In(input.clone()));
+    /// Something happens to the executive, and what belongs in the journal of it is put there. Says whether it was of use, and
+    /// whether anything has changed.
+    fn happens(&mut self, at: Time, input: Input) -> (Answer, bool) {
+        let Handled { answer, record } = self.executive.handle(at, input);
+        let has_changed = record.is_some();
+        if let Some(input) = record {
+            self.record(at, Record::In(input));
         }
-        handled
+        (answer, has_changed)
     }
 
     fn take(&mut self, message: Message) {
@@ -229,7 +231,8 @@ impl Loop {
                 let ago = ago.map(|ago| Duration::from_micros(micros(ago)));
                 self.with_driver.remove(&id);
                 // A driver may say what it likes; said again it is no news.
-                if self.happens(now, Input::Executed { id, ago }).record.is_some() {
+                let (_, is_news) = self.happens(now, Input::Executed { id, ago });
+                if is_news {
                     self.perform();
                     self.sync();
                 }
@@ -237,7 +240,8 @@ impl Loop {
             Message::Failed { id, reason, doubt } => {
                 self.with_driver.remove(&id);
                 let failed = Input::Failed { id: id.clone(), reason: reason.clone(), doubt };
-                if self.happens(now, failed).record.is_some() {
+                let (_, is_news) = self.happens(now, failed);
+                if is_news {
                     self.desk.tell(Happening::Failed { at: now, id, reason });
                     self.perform();
                 }
@@ -283,7 +287,8 @@ impl Loop {
         let mut heard = Vec::new();
         for (name, event) in events {
             let input = Input::news(self.executive.network(), event);
-            match self.happens(arrived, input).answer {
+            let (became, _) = self.happens(arrived, input);
+            match became {
                 Answer::Accepted => {
                     heard.push(event);
                     answer.accepted.push(name);
@@ -400,7 +405,8 @@ impl Loop {
 
     fn send(&mut self, sending: Sending) {
         let now = self.clock.now();
-        let leaves = self.happens(now, Input::Sent { id: sending.id.clone() }).is_accepted();
+        let (became, _) = self.happens(now, Input::Sent { id: sending.id.clone() });
+        let leaves = became == Answer::Accepted;
         // The record is there before the driver is told: who resumes knows.
         self.write();
         if !leaves || self.lost.is_some() {

@@ -6,10 +6,9 @@
 
 use crate::check::{Verdict, check};
 use crate::conflict::{Conflict, Part};
-use crate::model::Network;
+use crate::model::{Network, Requirement};
 use crate::stnu::TooLarge;
 use crate::time::{Bound, Duration};
-use crate::vary::Knob;
 
 /// The conflicts, those of fewest members first, at most so many; none if the network is controllable. No bound of a
 /// requirement is in two of them, unless it is [0, 0].
@@ -26,27 +25,42 @@ pub fn conflicts(network: &Network, most: usize) -> Result<Vec<Conflict>, TooLar
     while found.len() < most
         && let Verdict::Uncontrollable(conflict) = check(&rest)?
     {
-        let next = without(&rest, &conflict);
+        let has_bounds = loosen(&mut rest, &conflict);
         found.push(conflict);
-        match next {
-            Some(next) => rest = next,
-            None => break,
+        if !has_bounds {
+            break;
         }
     }
     found.sort_by_key(|conflict| conflict.members.len());
     Ok(found)
 }
 
-/// The network with the bounds of ours that are in a conflict out of the way; `None` if there are none.
-pub fn without(network: &Network, conflict: &Conflict) -> Option<Network> {
-    let is_free = |part: &Part| match *part {
-        Part::RequirementLower(index) | Part::RequirementUpper(index) => {
-            let (requirement, zero) = (network.requirements()[index], Bound::Finite(Duration::ZERO));
-            (requirement.lower, requirement.upper) != (zero, zero)
-        }
-        _ => false,
-    };
-    let parts: Vec<Part> = conflict.members.iter().map(|share| share.part).filter(is_free).collect();
-    let loosened = |network: Network, part: &Part| Knob::of(*part)?.at(&network, Bound::Infinite);
-    (!parts.is_empty()).then(|| parts.iter().try_fold(network.clone(), loosened))?
+/// The network with the bounds of ours that are in some conflicts out of the way.
+pub fn without<'a>(network: &Network, conflicts: impl IntoIterator<Item = &'a Conflict>) -> Network {
+    let mut rest = network.clone();
+    for conflict in conflicts {
+        loosen(&mut rest, conflict);
+    }
+    rest
+}
+
+/// Puts the bounds of ours that are in a conflict out of the way; `false` if there are none.
+fn loosen(network: &mut Network, conflict: &Conflict) -> bool {
+    let zero = Bound::Finite(Duration::ZERO);
+    let joins = |it: &Requirement| (it.lower, it.upper) == (zero, zero);
+    let parts = conflict.members.iter().map(|share| share.part);
+    // What joins is known before any of it is changed.
+    let free: Vec<(usize, bool)> = parts
+        .filter_map(|part| match part {
+            Part::RequirementLower(index) => Some((index, true)),
+            Part::RequirementUpper(index) => Some((index, false)),
+            _ => None,
+        })
+        .filter(|&(index, _)| !joins(&network.requirements()[index]))
+        .collect();
+    for &(index, is_lower) in &free {
+        let requirement = network.requirement_mut(index);
+        *(if is_lower { &mut requirement.lower } else { &mut requirement.upper }) = Bound::Infinite;
+    }
+    !free.is_empty()
 }

@@ -131,21 +131,26 @@ impl Repetition {
     }
 
     fn happens(&mut self, at: Time, input: &Input, plans: Plans) -> Result<(), String> {
-        let mut input = input.clone();
-        match &mut input {
-            Input::Rebuilt { from, known: None, made } if plans == Plans::AsRecorded => {
-                *made = self.executive.poll_rebuild(*from).map(|rebuild| Box::new(rebuild.without_plan()));
+        let given = match input {
+            // What was known then is found again; of a plan that was not there it is enough to know that.
+            Input::Rebuilt { from, known, .. } => {
+                let is_none = known.is_none() && plans == Plans::AsRecorded;
+                let rebuild = is_none.then(|| self.executive.poll_rebuild(*from)).flatten();
+                let made = rebuild.map(|rebuild| Box::new(rebuild.without_plan()));
+                Input::Rebuilt { from: *from, known: None, made }
             }
+            input => input.clone(),
+        };
+        if let Input::Resumed { .. } = input {
             // What was to leave leaves now, as part of being back.
-            Input::Resumed { .. } => self.sends.clear(),
-            _ => {}
+            self.sends.clear();
         }
-        let handled = self.executive.handle(at, input.clone());
+        let handled = self.executive.handle(at, given);
         match (handled.answer, input, handled.record) {
             (Answer::Ignored(Why::UnknownEvent), Input::News { event }, _) => {
                 Err(format!("there is no event `{event}`"))
             }
-            (_, Input::Rebuilt { known, .. }, Some(Input::Rebuilt { known: ours, .. })) if ours == known => {
+            (_, Input::Rebuilt { known, .. }, Some(Input::Rebuilt { known: ours, .. })) if ours == *known => {
                 Ok(())
             }
             (_, Input::Rebuilt { .. }, _) => {

@@ -56,7 +56,6 @@ impl Dispatcher {
         };
         self.agenda = agenda(&reduction, &net, |event| self.settings.lead_of(self.is_carried_out(event)));
         self.reduction = reduction;
-        self.anew = Some(self.anew());
         self.take_up(rebuilt.now.as_micros());
         Adoption::Followed
     }
@@ -102,7 +101,6 @@ impl Dispatcher {
         let plan = Plan { network: Arc::clone(network), reduction, net, precedence };
         let mut dispatcher = Dispatcher::following(plan, settings, knowledge);
         dispatcher.version = version;
-        dispatcher.anew = Some(dispatcher.anew());
         dispatcher.take_up(planned.as_micros());
         Some(dispatcher)
     }
@@ -111,6 +109,8 @@ impl Dispatcher {
     fn take_up(&mut self, planned: i64) {
         self.active.clear();
         self.activate_from_origin();
+        let anew = self.anew();
+        self.anew = Some(anew);
         for event in self.network.event_ids() {
             let known = *self.known(event);
             if known.settled && known.fixed.is_none() {
@@ -119,8 +119,8 @@ impl Dispatcher {
                     Some(heard) if self.recorded(heard, planned, planned) == heard => {
                         (heard, How::Observed, Cause::News)
                     }
-                    Some(_) => (planned, How::Buffered, self.anew()),
-                    None => (planned, How::Imagined, self.anew()),
+                    Some(_) => (planned, How::Buffered, anew),
+                    None => (planned, How::Imagined, anew),
                 };
                 self.fix(event, time, how, cause);
             }

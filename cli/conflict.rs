@@ -1,6 +1,6 @@
 //! Why a network is not controllable, as a diagnostic and as JSON.
 
-use kirk_compiler::{Diagnostic, Explain, Origin, Origins};
+use kirk_compiler::{Diagnostic, Explain};
 use kirk_network::{Conflict, Duration, Network, Part};
 use serde::Serialize;
 
@@ -39,7 +39,7 @@ pub(crate) fn to_json(
                 Part::AfterOrigin => ("after-origin", None, None),
                 Part::Join(index) => ("join", requirement_ends(network, index), Some(index)),
             };
-            let origin = input.origins().and_then(|origins| origin(share.part, origins));
+            let origin = input.origins().and_then(|origins| origins.constraint(share.part));
             let (from, to) = ends.unzip();
             MemberJson {
                 kind,
@@ -54,13 +54,6 @@ pub(crate) fn to_json(
             }
         })
         .collect()
-}
-
-fn origin(part: Part, origins: &Origins) -> Option<&Origin> {
-    match part {
-        Part::Join(index) => origins.requirements.get(index),
-        part => origins.of(part).map(|(origin, _)| origin),
-    }
 }
 
 fn requirement_ends(network: &Network, index: usize) -> Option<(String, String)> {

@@ -16,7 +16,7 @@ use crate::foreign::one_line;
 use crate::input::{Input, load_all, without_mark};
 use crate::json::line;
 use crate::judge::too_large;
-use crate::output::{Status, complain, print, print_line};
+use crate::output::{Status, complain, print, print_line, remark};
 use crate::replace::Replacement;
 use crate::report::{Reporter, SpanJson};
 
@@ -39,14 +39,15 @@ pub(crate) fn repair_of(arguments: &RepairOf, common: &Common) -> io::Result<Sta
             return Ok(Status::Wrong);
         }
     };
-    let found = match found {
-        Ok(found) => found.map(|found| proven(found, &input, arguments)),
+    let mut found = match found {
+        Ok(found) => found,
         Err(TooLarge) => {
             input.diagnostics.push(too_large());
             Reporter::new(&input.sources).show(&input.diagnostics, common)?;
             return Ok(Status::Wrong);
         }
     };
+    let dropped = found.as_mut().map_or(0, |found| drop_unproven(found, &input, arguments));
     if arguments.apply.is_some() || arguments.diff {
         return edit(arguments, &input, found.as_ref());
     }
@@ -61,6 +62,11 @@ pub(crate) fn repair_of(arguments: &RepairOf, common: &Common) -> io::Result<Sta
             let program = input.program(&arguments.selection);
             for text in lines(&file, &program, found, &reporter, arguments) {
                 print_line(&one_line(&text))?;
+            }
+            if dropped > 0 {
+                remark(&format!(
+                    "{dropped} more left out: what it would be in this text is not proven to be enough"
+                ));
             }
         }
     }
@@ -107,15 +113,16 @@ fn wishes(arguments: &RepairOf, input: &Input) -> Result<Wishes, String> {
     })
 }
 
-/// The proposals whose edits, read afresh, are controllable. What cannot be edited is proven of the network.
-fn proven(found: Proposals, input: &Input, arguments: &RepairOf) -> Proposals {
-    let is_proven = |proposal: &Proposal| {
+/// Leaves the proposals whose edits, read afresh, are controllable, and returns how many others there were. What cannot be edited is
+/// proven of the network.
+fn drop_unproven(found: &mut Proposals, input: &Input, arguments: &RepairOf) -> usize {
+    let before = found.proposals.len();
+    found.proposals.retain(|proposal| {
         let Some(sources) = edited(proposal, &input.sources) else { return true };
         let after = input.with_sources(sources, &arguments.selection);
         after.network.is_some_and(|network| check(&network) == Ok(Verdict::Controllable))
-    };
-    let (proposals, _): (Vec<Proposal>, Vec<Proposal>) = found.proposals.into_iter().partition(is_proven);
-    Proposals { proposals, ..found }
+    });
+    before - found.proposals.len()
 }
 
 /// The sources with a proposal made; `None` if it is of what cannot be edited.

@@ -1,14 +1,13 @@
 //! `kirk slack`: how much is left of a "yes": how far each bound can move, and how late everything may start.
 
-use std::collections::BTreeMap;
 use std::io;
 
 use kirk_compiler::episode::Kind;
 use kirk_compiler::repair::what;
-use kirk_compiler::{Origins, Span, events_of};
+use kirk_compiler::{Origin, OriginKind, Origins, Side, Span, Written, events_of, written};
 use kirk_network::merge::{Merged, merge};
 use kirk_network::promise::{promises, stretch};
-use kirk_network::slack::{Factor, Slack, beyond, bounds, common_factor, slack};
+use kirk_network::slack::{Factor, Slack, beyond, common_factor, slack};
 use kirk_network::stnu::TooLarge;
 use kirk_network::vary::Knob;
 use kirk_network::walk::{Step, walk};
@@ -74,7 +73,7 @@ struct Measured {
     slack: Slack,
     what: String,
     side: Side,
-    place: Option<Span>,
+    place: Span,
 }
 
 /// An activity of ours.
@@ -85,14 +84,15 @@ struct Activity {
 }
 
 fn measure(network: &Network, input: &Input) -> Result<Option<Left>, TooLarge> {
-    let knobs = knobs(network, input);
+    let Some(origins) = input.origins() else { return Ok(None) };
+    let knobs = knobs(network, origins);
     let all: Vec<Knob> = knobs.iter().map(|(knob, ..)| knob.clone()).collect();
     let Some(found) = slack(network, &all)? else { return Ok(None) };
-    let measured = found.into_iter().zip(knobs).map(|(slack, (knob, what, place))| Measured {
+    let measured = found.into_iter().zip(knobs).map(|(slack, (_, what, written))| Measured {
         slack,
         what,
-        side: Side::of(knob.parts()[0]),
-        place,
+        side: written.side,
+        place: written.place(),
     });
     let mut bounds: Vec<Measured> = measured.collect();
     bounds.sort_by_key(|bound| bound.slack.room.map_or(i64::MAX, Duration::as_micros));
@@ -106,7 +106,7 @@ fn measure(network: &Network, input: &Input) -> Result<Option<Left>, TooLarge> {
     let step = |step: Step| {
         let bound = step.part.bound(network);
         let needs = if step.needs < Duration::ZERO { -bound } else { bound };
-        Some((needs, words(step.part, input)?))
+        Some((needs, what(step.part, origins.of(step.part)?.0)?))
     };
     let critical = steps.into_iter().filter_map(step).collect();
     let news = bounds.iter().filter_map(|bound| match bound.slack.knob.parts()[0] {
@@ -121,31 +121,17 @@ fn measure(network: &Network, input: &Input) -> Result<Option<Left>, TooLarge> {
     Ok(Some(Left { bounds, critical, activities, news, factor }))
 }
 
-/// What can be moved: each bound that is written, with what it is and where. What is written once moves together.
-fn knobs(network: &Network, input: &Input) -> Vec<(Knob, String, Option<Span>)> {
-    let Some(origins) = input.origins() else { return Vec::new() };
-    if input.is_network() {
-        let place = |part: Part| origins.of(part).map(|(origin, which)| origin.places[which]);
-        let named = bounds(network).into_iter().filter_map(|knob| {
-            let part = knob.parts()[0];
-            Some((knob, words(part, input)?, place(part)))
-        });
-        return named.filter(|(knob, ..)| is_worth_a_line(knob.parts()[0], network)).collect();
-    }
-    let mut written: BTreeMap<(Span, Side), Vec<Part>> = BTreeMap::new();
-    for part in bounds(network).iter().map(|knob| knob.parts()[0]) {
-        if let Some(place) = written_at(part, origins).filter(|_| is_worth_a_line(part, network)) {
-            written.entry((place, Side::of(part))).or_default().push(part);
+/// What can be moved: each bound that is written, with what it is. What is written once moves together.
+fn knobs<'a>(network: &Network, origins: &'a Origins) -> Vec<(Knob, String, Written<'a>)> {
+    let is_meant = |part: Part, origin: &Origin| is_by_itself(part, origin) && is_worth_a_line(part, network);
+    let knob = |written: Written<'a>| {
+        let mut what = what(written.parts[0], written.origin)?;
+        if written.parts.len() > 1 {
+            what.push_str(&format!(" ({} occurrences together)", written.parts.len()));
         }
-    }
-    let knob = |((place, _), parts): ((Span, Side), Vec<Part>)| {
-        let mut what = words(parts[0], input)?;
-        if parts.len() > 1 {
-            what.push_str(&format!(" ({} occurrences together)", parts.len()));
-        }
-        Some((Knob::together(parts)?, what, Some(place)))
+        Some((Knob::together(written.parts.clone())?, what, written))
     };
-    written.into_iter().filter_map(knob).collect()
+    written(network, origins, is_meant).into_iter().filter_map(knob).collect()
 }
 
 /// News that comes at once, or may be early, is nothing to measure unless somebody says so.
@@ -156,49 +142,21 @@ fn is_worth_a_line(part: Part, network: &Network) -> bool {
     }
 }
 
-/// Where a bound is written by itself, if it is.
-fn written_at(part: Part, origins: &Origins) -> Option<Span> {
-    let (origin, side) = origins.of(part)?;
-    let is_written = origin.kind.is_amount()
-        && (origin.places[side] != origin.span || matches!(part, Part::LinkUpper(_) | Part::DelayMax(_)));
-    is_written.then_some(origin.places[side])
+/// True if a bound is written by itself, and not what a form leaves open.
+fn is_by_itself(part: Part, origin: &Origin) -> bool {
+    let is_entry = matches!(origin.kind, OriginKind::Requirement | OriginKind::Link);
+    let is_written = Side::of(part).is_some_and(|side| origin.place(side) != origin.span);
+    is_entry || is_written || matches!(part, Part::LinkUpper(_) | Part::DelayMax(_))
 }
 
-/// Which bound of an amount a part is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "kebab-case")]
-enum Side {
-    Lower,
-    MaxDelay,
-    MinDelay,
-    Upper,
-}
-
-impl Side {
-    fn of(part: Part) -> Side {
-        match part {
-            Part::RequirementLower(_) | Part::LinkLower(_) => Side::Lower,
-            Part::DelayMin(_) => Side::MinDelay,
-            Part::DelayMax(_) => Side::MaxDelay,
-            Part::RequirementUpper(_) | Part::LinkUpper(_) => Side::Upper,
-            // Nobody's amounts, which are not measured.
-            Part::AfterOrigin | Part::Join(_) => Side::Upper,
-        }
+/// A side as the end of a line.
+fn words(side: Side) -> &'static str {
+    match side {
+        Side::Lower => "at least",
+        Side::MaxDelay => "maximum",
+        Side::MinDelay => "minimum",
+        Side::Upper => "at most",
     }
-
-    fn words(self) -> &'static str {
-        match self {
-            Side::Lower => "at least",
-            Side::MaxDelay => "maximum",
-            Side::MinDelay => "minimum",
-            Side::Upper => "at most",
-        }
-    }
-}
-
-/// What a bound is about; `None` for what nobody wrote.
-fn words(part: Part, input: &Input) -> Option<String> {
-    what(part, input.origins()?.of(part)?.0)
 }
 
 /// The activities of ours, with the latest start that can be promised and how long each may be made to take. Of a network, the
@@ -243,12 +201,12 @@ impl Left {
                 continue;
             }
             let room = slack.room.map_or("any".to_string(), |room| format!("{room} s"));
-            let at = place.and_then(|place| reporter.at(place)).map_or(String::new(), |at| format!("  {at}"));
+            let at = reporter.at(*place).map_or(String::new(), |at| format!("  {at}"));
             lines.push(format!(
                 "{room:>12}  {:>10}  {:<22}  {what}, {}{at}",
                 value(slack.value),
                 range(slack),
-                side.words()
+                words(*side)
             ));
         }
         if !self.critical.is_empty() {
@@ -322,7 +280,7 @@ struct SlackJson<'a> {
 #[derive(Serialize)]
 struct BoundJson<'a> {
     what: &'a str,
-    file: Option<&'a str>,
+    file: &'a str,
     span: Option<SpanJson>,
     bound: Side,
     value: Option<Duration>,
@@ -351,10 +309,6 @@ struct NewsJson<'a> {
     most: Option<Duration>,
 }
 
-fn seconds(bound: Bound) -> Option<Duration> {
-    bound.finite()
-}
-
 impl<'a> SlackJson<'a> {
     fn nothing(file: &'a str) -> SlackJson<'a> {
         SlackJson {
@@ -372,12 +326,12 @@ impl<'a> SlackJson<'a> {
     fn new(file: &'a str, left: &'a Left, reporter: &'a Reporter<'_>) -> SlackJson<'a> {
         let bound = |Measured { slack, what, side, place }: &'a Measured| BoundJson {
             what,
-            file: place.map(|place| reporter.name(place)),
-            span: place.and_then(|place| reporter.span_json(place)),
+            file: reporter.name(*place),
+            span: reporter.span_json(*place),
             bound: *side,
-            value: seconds(slack.value),
-            least: seconds(slack.least),
-            most: seconds(slack.most),
+            value: slack.value.finite(),
+            least: slack.least.finite(),
+            most: slack.most.finite(),
             room: slack.room,
         };
         SlackJson {
@@ -390,13 +344,13 @@ impl<'a> SlackJson<'a> {
                 .map(|Activity { name, latest, stretch }| ActivityJson {
                     name,
                     latest_start: *latest,
-                    may_take: stretch.and_then(seconds),
+                    may_take: stretch.and_then(Bound::finite),
                 })
                 .collect(),
             budget: left
                 .news
                 .iter()
-                .map(|(event, value, most)| NewsJson { event, value: seconds(*value), most: seconds(*most) })
+                .map(|(event, value, most)| NewsJson { event, value: value.finite(), most: most.finite() })
                 .collect(),
             factor: left.factor.map(|factor| match factor {
                 Factor::Millionths(millionths) => Some(Duration::from_micros(millionths)),

@@ -5,12 +5,12 @@ mod story;
 
 use kirk_network::conflicts::{conflicts, without};
 use kirk_network::stnu::TooLarge;
-use kirk_network::{Conflict, Duration, Network, Part, Share};
+use kirk_network::{Conflict, Duration, Network, Part, Requirement, Share};
 
 use crate::code::Code;
 use crate::diagnostic::{Diagnostic, Suggestion};
 use crate::lower::Lowered;
-use crate::origins::{Origin, OriginKind, Origins};
+use crate::origins::{Origin, OriginKind, Origins, Side};
 use crate::repair::amount as amount_in;
 use crate::source::{Source, Span};
 use story::{story, wrapped};
@@ -136,18 +136,13 @@ impl<'a> Explain<'a> {
 
 /// What does not go together, for the headline.
 fn what_kind(conflict: &Conflict, network: &Network, origins: &Origins) -> &'static str {
-    let requirement = |part: Part| match part {
-        Part::RequirementUpper(index) | Part::RequirementLower(index) | Part::Join(index) => {
-            Some((origins.requirements.get(index)?, network.requirements().get(index)?))
-        }
-        _ => None,
-    };
     let parts = || conflict.members.iter().map(|share| share.part);
     let of_ours = |part: Part| {
         let bound = part.bound(network) != Duration::ZERO || matches!(part, Part::RequirementUpper(_));
-        bound && requirement(part).is_some_and(|(origin, _)| origin.kind.is_amount())
+        let is_ours = matches!(part, Part::RequirementUpper(_) | Part::RequirementLower(_));
+        bound && is_ours && origins.constraint(part).is_some_and(|origin| origin.kind.is_amount())
     };
-    let is_joined = |part: Part| requirement(part).is_some_and(|(origin, _)| origin.kind.is_join());
+    let is_joined = |part: Part| origins.constraint(part).is_some_and(|origin| origin.kind.is_join());
     if is_circle(conflict) {
         "these go round in a circle, each after the one before"
     } else if !parts().any(of_ours) && parts().any(is_joined) {
@@ -182,22 +177,19 @@ fn advice(
 ) -> Vec<String> {
     let has = |wanted: &dyn Fn(Part) -> bool| conflict.members.iter().any(|share| wanted(share.part));
     let late = has(&|part| matches!(part, Part::DelayMax(_)));
+    let is_of = |part: Part, is: &dyn Fn(OriginKind) -> bool| {
+        origins.constraint(part).is_some_and(|origin| is(origin.kind))
+    };
     let joined = has(&|part| match part {
         Part::RequirementUpper(index) | Part::RequirementLower(index) => {
-            let ends = network.requirements().get(index);
-            origins.requirements.get(index).is_some_and(|origin| origin.kind.is_join())
-                && ends.is_some_and(|r| network.link_of(r.from).is_some() || network.link_of(r.to).is_some())
+            is_of(part, &OriginKind::is_join) && is_natures(network, network.requirements()[index])
         }
         _ => false,
     });
-    let side_by_side = has(&|part| {
-        matches!(part, Part::Join(index)
-        if origins.requirements.get(index).is_some_and(|origin| origin.kind == OriginKind::SideBySide))
-    });
-    let bounded = has(&|part| {
-        matches!(part, Part::RequirementUpper(index)
-        if origins.requirements.get(index).is_some_and(|origin| !origin.kind.is_join()))
-    });
+    let side_by_side =
+        has(&|part| matches!(part, Part::Join(_)) && is_of(part, &|kind| kind == OriginKind::SideBySide));
+    let bounded =
+        has(&|part| matches!(part, Part::RequirementUpper(_)) && is_of(part, &|kind| !kind.is_join()));
     let mut other = Vec::new();
     if bounded && enough.is_none() {
         other.push("a longer upper bound");
@@ -232,6 +224,11 @@ fn advice(
         lines.extend(wrapped("", &format!("{takes} {list}.")));
     }
     lines
+}
+
+/// True if Nature decides when one of the events of a requirement is.
+fn is_natures(network: &Network, Requirement { from, to, .. }: Requirement) -> bool {
+    network.link_of(from).is_some() || network.link_of(to).is_some()
 }
 
 /// The amounts as a sum with its result: `20 - 10 - 15 = -5`.
@@ -276,7 +273,7 @@ pub(crate) fn say(
     };
     let times = if share.times > 1 { format!(" ({} times)", share.times) } else { String::new() };
     let written =
-        |value: Duration, origin: &Origin, side: usize| amount_in(value, origin.places[side], sources);
+        |value: Duration, origin: &Origin, side: Side| amount_in(value, origin.place(side), sources);
     let requirement =
         |index: usize| Some((network.requirements().get(index)?, origins.requirements.get(index)?));
     let contingent =
@@ -284,51 +281,69 @@ pub(crate) fn say(
     let (span, text) = match share.part {
         Part::RequirementUpper(index) => {
             let (requirement, origin) = requirement(index)?;
-            (place(origin, 1), limit(origin, "at most", &written(requirement.upper.finite()?, origin, 1)))
+            (
+                place(origin, Side::Upper),
+                limit(origin, "at most", &written(requirement.upper.finite()?, origin, Side::Upper)),
+            )
         }
         Part::RequirementLower(index) => {
             let (requirement, origin) = requirement(index)?;
-            let by_nature =
-                network.link_of(requirement.from).is_some() || network.link_of(requirement.to).is_some();
+            let by_nature = is_natures(network, *requirement);
             if origin.kind == OriginKind::Order && !by_nature {
                 return None;
             }
-            (place(origin, 0), limit(origin, "at least", &written(requirement.lower.finite()?, origin, 0)))
+            (
+                place(origin, Side::Lower),
+                limit(origin, "at least", &written(requirement.lower.finite()?, origin, Side::Lower)),
+            )
         }
         Part::LinkLower(index) => {
             let (link, origin) = contingent(index)?;
             (
-                origin.places[0],
-                format!("Nature may take only {} {}", written(link.lower, origin, 0), origin.about()),
+                origin.place(Side::Lower),
+                format!(
+                    "Nature may take only {} {}",
+                    written(link.lower, origin, Side::Lower),
+                    origin.about()
+                ),
             )
         }
         Part::LinkUpper(index) => {
             let (link, origin) = contingent(index)?;
             (
-                origin.places[1],
-                format!("Nature may take up to {} {}", written(link.upper, origin, 1), origin.about()),
+                origin.place(Side::Upper),
+                format!(
+                    "Nature may take up to {} {}",
+                    written(link.upper, origin, Side::Upper),
+                    origin.about()
+                ),
             )
         }
         Part::DelayMin(index) => {
             let (link, origin) = contingent(index)?;
             (
-                origin.places[2],
-                format!("the news of {} may be only {} late", origin.end, written(link.delay.min, origin, 2)),
+                origin.place(Side::MinDelay),
+                format!(
+                    "the news of {} may be only {} late",
+                    origin.end,
+                    written(link.delay.min, origin, Side::MinDelay)
+                ),
             )
         }
         Part::DelayMax(index) => {
             let (link, origin) = contingent(index)?;
             let text = match link.delay.max.finite() {
-                Some(max) => format!("the news of {} may be {} late", origin.end, written(max, origin, 3)),
+                Some(max) => {
+                    format!("the news of {} may be {} late", origin.end, written(max, origin, Side::MaxDelay))
+                }
                 None => format!("{} may never be heard", origin.end),
             };
-            (origin.places[3], text)
+            (origin.place(Side::MaxDelay), text)
         }
         // That one follows the other goes without saying; that they run side by side, or that nothing takes time, not.
         Part::Join(index) => {
             let (requirement, origin) = requirement(index)?;
-            let by_nature =
-                network.link_of(requirement.from).is_some() || network.link_of(requirement.to).is_some();
+            let by_nature = is_natures(network, *requirement);
             match origin.kind {
                 OriginKind::SideBySide if by_nature => (origin.span, origin.text.clone()),
                 OriginKind::SideBySide => (origin.span, JOINED.to_string()),
@@ -342,8 +357,8 @@ pub(crate) fn say(
     Some((span, format!("{text}{times}{amount}")))
 }
 
-fn place(origin: &Origin, which: usize) -> Span {
-    if origin.kind.is_amount() { origin.places[which] } else { origin.span }
+fn place(origin: &Origin, side: Side) -> Span {
+    if origin.kind.is_amount() { origin.place(side) } else { origin.span }
 }
 
 fn limit(origin: &Origin, word: &str, bound: &str) -> String {

@@ -88,6 +88,7 @@ mod source;
 pub mod typed;
 mod unfold;
 pub mod words;
+mod written;
 
 pub use analyse::symbols::{Place, Symbol, SymbolKind, Symbols, Uses};
 pub use code::{Code, explain};
@@ -99,10 +100,11 @@ pub use format::format;
 pub use front::{Front, front, front_in_order};
 pub use kirk_network::nearest;
 pub use lower::{Lowered, events_of};
-pub use origins::{Origin, OriginKind, Origins};
+pub use origins::{Origin, OriginKind, Origins, Side, Subject};
 pub use sexpr::to_sexpr;
 pub use source::{LineIndex, Source, Span};
 pub use unfold::{Unfolded, unfold};
+pub use written::{Written, written};
 
 /// What to compile of the sources.
 #[derive(Clone, Debug, PartialEq, Eq)]

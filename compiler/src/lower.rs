@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use kirk_network::{Bound, ContingentLink, Delay, Duration, Event, EventId, Name, Network, Requirement};
 
 use crate::episode::{Constraint, Episode, EventOf, Interval, Kind};
-use crate::origins::{Origin, OriginKind, Origins};
+use crate::origins::{Origin, OriginKind, Origins, Subject};
 use crate::source::Span;
 
 /// What a program is compiled to.
@@ -132,7 +132,7 @@ impl Lowering {
             names.extend(others);
             let Interval { lower, upper, lower_span, upper_span, span } = *interval;
             self.requirements.push(Requirement { from, to, lower: Bound::Finite(lower), upper });
-            let subject = format!("from {before} to {after}");
+            let subject = Subject::Reach(format!("from {before} to {after}"));
             let text = format!("{} {subject}", range(interval));
             let places = [lower_span, upper_span, span, span];
             self.origins.requirements.push(Origin {
@@ -250,11 +250,11 @@ pub(crate) fn called(episode: &Episode) -> String {
     }
 }
 
-/// An episode as the subject of a sentence about itself.
-fn subject(episode: &Episode) -> String {
+/// What a constraint of an episode is about.
+fn subject(episode: &Episode) -> Subject {
     match episode.internal {
-        true => format!("this `{}`", episode.kind.word()),
-        false => format!("`{}`", episode.name),
+        true => Subject::Form(episode.kind.word()),
+        false => Subject::Named(episode.name.clone()),
     }
 }
 

@@ -52,7 +52,7 @@ fn notes_on_merging(network: &Network, origins: &Origins, root: &Episode) -> Vec
         {
             let contingent = &network.contingents()[*link];
             let Some(origin) = origins.contingents.get(*link) else { break };
-            notes.push(note(episode, &origin.subject, contingent.delay, origin.places));
+            notes.push(note(episode, &origin.subject.to_string(), contingent.delay, origin.places));
         }
     }
     notes

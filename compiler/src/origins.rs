@@ -1,6 +1,10 @@
 //! Where the constraints of a network come from, and how to speak of them: of a program its forms, of a network file its entries.
 
+use std::fmt;
+
 use kirk_network::{Bound, ContingentLink, Delay, Duration, EventId, Network, Part, Requirement, SourceMap};
+
+use serde::Serialize;
 
 use crate::source::Span;
 
@@ -22,14 +26,73 @@ pub struct Origin {
     pub text: String,
     /// What kind of constraint it is.
     pub kind: OriginKind,
-    /// What it is about: an activity, a form, or from where to where it reaches.
-    pub subject: String,
+    /// What it is about.
+    pub subject: Subject,
     /// The event at its end, in words.
     pub end: String,
     /// What a user may call it: names of what it is about, and of an entry of a file its number.
     pub names: Vec<String>,
     /// Where the lower and the upper bound are written, and the shortest and the longest delay.
     pub places: [Span; 4],
+}
+
+/// What a constraint is about.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// An activity, by its name.
+    Named(String),
+    /// A form without a name, by its word.
+    Form(&'static str),
+    /// What lies between two events: "from `a` to `b`".
+    Reach(String),
+}
+
+impl Subject {
+    /// What to call it where it does not stand: "`drive`", "the `sequence`".
+    pub fn elsewhere(&self) -> String {
+        match self {
+            Subject::Form(word) => format!("the `{word}`"),
+            _ => self.to_string(),
+        }
+    }
+}
+
+/// What to call it where it stands: "`drive`", "this `sequence`".
+impl fmt::Display for Subject {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Subject::Named(name) => write!(f, "`{name}`"),
+            Subject::Form(word) => write!(f, "this `{word}`"),
+            Subject::Reach(reach) => f.write_str(reach),
+        }
+    }
+}
+
+/// Which amount of a constraint a bound is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Side {
+    /// The least of a duration.
+    Lower,
+    /// The longest delay of news.
+    MaxDelay,
+    /// The shortest delay of news.
+    MinDelay,
+    /// The most of a duration.
+    Upper,
+}
+
+impl Side {
+    /// `None` for what has no bound.
+    pub fn of(part: Part) -> Option<Side> {
+        Some(match part {
+            Part::RequirementLower(_) | Part::LinkLower(_) => Side::Lower,
+            Part::RequirementUpper(_) | Part::LinkUpper(_) => Side::Upper,
+            Part::DelayMin(_) => Side::MinDelay,
+            Part::DelayMax(_) => Side::MaxDelay,
+            Part::AfterOrigin | Part::Join(_) => return None,
+        })
+    }
 }
 
 /// The kinds of constraints there are.
@@ -72,10 +135,20 @@ impl OriginKind {
 impl Origin {
     /// What it is about, as the end of a sentence: "for `drive`", "from the start of `a` to the end of `b`".
     pub fn about(&self) -> String {
-        match (self.kind, self.subject.strip_prefix("this ")) {
-            (OriginKind::Between | OriginKind::Requirement | OriginKind::Link, _) => self.subject.clone(),
-            (_, Some(form)) => format!("for the {form}"),
-            (_, None) => format!("for {}", self.subject),
+        match &self.subject {
+            Subject::Reach(reach) => reach.clone(),
+            subject => format!("for {}", subject.elsewhere()),
+        }
+    }
+
+    /// Where one of its amounts is written.
+    pub fn place(&self, side: Side) -> Span {
+        let [lower, upper, min_delay, max_delay] = self.places;
+        match side {
+            Side::Lower => lower,
+            Side::Upper => upper,
+            Side::MinDelay => min_delay,
+            Side::MaxDelay => max_delay,
         }
     }
 
@@ -99,7 +172,7 @@ impl Origins {
             let [lower_place, upper_place] =
                 [Part::RequirementLower(index), Part::RequirementUpper(index)].map(span);
             let zero = Bound::Finite(Duration::ZERO);
-            let subject = format!("from `{}` to `{}`", label(from), label(to));
+            let subject = Subject::Reach(format!("from `{}` to `{}`", label(from), label(to)));
             let text = match (lower, upper) {
                 (lower, upper) if lower == zero && upper == zero => {
                     format!("`{}` and `{}` are one event", label(from), label(to))
@@ -121,7 +194,7 @@ impl Origins {
         };
         let link = |(index, link): (usize, &ContingentLink)| {
             let (place, end) = (span(Part::LinkUpper(index)), format!("`{}`", label(link.to)));
-            let subject = format!("from `{}` to {end}", label(link.from));
+            let subject = Subject::Reach(format!("from `{}` to {end}", label(link.from)));
             let mut text = format!("{} to {} s {subject}, Nature decides", link.lower, link.upper);
             if link.delay != Delay::NONE {
                 let most = link.delay.max.finite().map_or("any time".to_string(), |max| format!("{max} s"));
@@ -140,16 +213,22 @@ impl Origins {
         }
     }
 
-    /// Where a bound comes from, and which of its places says it; `None` for what is no bound.
-    pub fn of(&self, part: Part) -> Option<(&Origin, usize)> {
+    /// Where a bound comes from, and which of its amounts it is; `None` for what is no bound.
+    pub fn of(&self, part: Part) -> Option<(&Origin, Side)> {
+        Some((self.constraint(part)?, Side::of(part)?))
+    }
+
+    /// Where the constraint comes from that something is a part of; `None` for what goes without saying.
+    pub fn constraint(&self, part: Part) -> Option<&Origin> {
         match part {
-            Part::RequirementLower(index) => Some((self.requirements.get(index)?, 0)),
-            Part::RequirementUpper(index) => Some((self.requirements.get(index)?, 1)),
-            Part::LinkLower(index) => Some((self.contingents.get(index)?, 0)),
-            Part::LinkUpper(index) => Some((self.contingents.get(index)?, 1)),
-            Part::DelayMin(index) => Some((self.contingents.get(index)?, 2)),
-            Part::DelayMax(index) => Some((self.contingents.get(index)?, 3)),
-            Part::AfterOrigin | Part::Join(_) => None,
+            Part::RequirementLower(index) | Part::RequirementUpper(index) | Part::Join(index) => {
+                self.requirements.get(index)
+            }
+            Part::LinkLower(index)
+            | Part::LinkUpper(index)
+            | Part::DelayMin(index)
+            | Part::DelayMax(index) => self.contingents.get(index),
+            Part::AfterOrigin => None,
         }
     }
 }

@@ -18,8 +18,9 @@ use kirk_network::vary::{Change, Knob};
 use kirk_network::{Bound, Duration, Network, Part};
 
 use crate::diagnostic::{Edit, Suggestion};
-use crate::origins::{Origin, OriginKind, Origins};
+use crate::origins::{Origin, OriginKind, Origins, Side};
 use crate::source::{Source, Span};
+use crate::written::{Written, written};
 pub use structure::slack;
 
 /// What is wanted of a repair.
@@ -167,8 +168,8 @@ pub(crate) fn change_of_source(
     sources: &[Source],
 ) -> Option<(String, Option<Suggestion>)> {
     let part = change.knob.parts()[0];
-    let (origin, which) = origins.of(part)?;
-    let title = title(change, origin, edit::unit(origin.places[which], sources));
+    let (origin, side) = origins.of(part)?;
+    let title = title(change, origin, edit::unit(origin.place(side), sources));
     let edits = match is_changeable(part, network, origin, sources) {
         true => edit::edits(change, network, origin, sources),
         false => Vec::new(),
@@ -190,62 +191,29 @@ fn levers<'a>(
     sources: &[Source],
     wishes: &Wishes,
 ) -> BTreeMap<Knob, Lever<'a>> {
-    let requirements = (0..network.requirements().len())
-        .flat_map(|index| [Part::RequirementLower(index), Part::RequirementUpper(index)]);
-    let links = (0..network.contingents().len()).flat_map(|index| {
-        let nature = wishes.nature.then_some([Part::LinkLower(index), Part::LinkUpper(index)]);
-        nature.into_iter().flatten().chain([Part::DelayMax(index)])
-    });
-    let mut written: BTreeMap<(Span, Kind), Vec<Part>> = BTreeMap::new();
-    for part in requirements.chain(links) {
-        let Some((origin, which)) = origins.of(part).filter(|(origin, _)| origin.kind.is_amount()) else {
-            continue;
+    let is_meant = |part: Part, origin: &Origin| {
+        let may_change = match part {
+            Part::DelayMin(_) => false,
+            Part::LinkLower(_) | Part::LinkUpper(_) => wishes.nature,
+            _ => true,
         };
-        let place = origin.places[which];
-        if is_changeable(part, network, origin, sources) {
-            written.entry((place, Kind::of(part))).or_default().push(part);
-        }
-    }
-    let lever = |((place, _), parts): ((Span, Kind), Vec<Part>)| {
-        let part = parts[0];
-        let (origin, _) = origins.of(part)?;
-        // What is written once is all that is read there.
-        let all: Vec<&Origin> = parts.iter().filter_map(|part| Some(origins.of(*part)?.0)).collect();
-        if all.iter().any(|origin| wishes.keep.iter().any(|name| is_called(origin, name))) {
+        may_change && is_changeable(part, network, origin, sources)
+    };
+    let is_kept = |origin: &Origin| wishes.keep.iter().any(|name| is_called(origin, name));
+    let lever = |written: Written<'a>| {
+        // What is written once is all that is read there, to keep and to weigh.
+        let all: Vec<&Origin> = written.parts.iter().filter_map(|part| origins.constraint(*part)).collect();
+        if !written.has_one_value(network) || all.iter().any(|origin| is_kept(origin)) {
             return None;
         }
-        let knob = Knob::together(parts)?;
-        let value = knob.value(network);
-        // One text with several values, by an argument, is not to be changed in one place.
-        let agree = |part: &Part| Knob::of(*part).is_some_and(|one| one.value(network) == value);
-        if !knob.parts().iter().all(agree) {
-            return None;
-        }
-        let knob = if keeps_order(part, network) { knob.limited(Duration::ZERO) } else { knob };
-        let unit = edit::step(place, value, sources);
+        let (part, place, origin) = (written.parts[0], written.place(), written.origin);
+        let knob = Knob::together(written.parts)?.in_its_sense(network);
+        let unit = edit::step(place, knob.value(network), sources);
         let mut allowed = Allowed::relative(network, knob.clone(), unit);
         allowed.weight = weight(allowed.weight, part, &all, wishes);
         Some((knob, Lever { allowed, origin, place }))
     };
-    written.into_iter().filter_map(lever).collect()
-}
-
-/// Which of the amounts at a place.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Kind {
-    Least,
-    Most,
-    Late,
-}
-
-impl Kind {
-    fn of(part: Part) -> Kind {
-        match part {
-            Part::RequirementLower(_) | Part::LinkLower(_) => Kind::Least,
-            Part::DelayMin(_) | Part::DelayMax(_) => Kind::Late,
-            _ => Kind::Most,
-        }
-    }
+    written(network, origins, is_meant).into_iter().filter_map(lever).collect()
 }
 
 /// True if a bound is there and is written by itself.
@@ -259,26 +227,11 @@ fn is_changeable(part: Part, network: &Network, origin: &Origin, sources: &[Sour
     let by_itself = match origin.kind {
         OriginKind::Requirement | OriginKind::Link => true,
         _ => match part {
-            Part::DelayMax(_) => origin.places[3] != origin.span,
-            _ => origin.places[0] != origin.places[1],
+            Part::DelayMax(_) => origin.place(Side::MaxDelay) != origin.span,
+            _ => origin.place(Side::Lower) != origin.place(Side::Upper),
         },
     };
     is_there && by_itself && edit::is_written(part, origin, sources)
-}
-
-/// What takes time is to take no less than none, what comes after something goes on to, and no news is there before it.
-fn keeps_order(part: Part, network: &Network) -> bool {
-    match part {
-        Part::RequirementLower(index) => {
-            network.requirements()[index].lower.finite().is_some_and(|lower| lower >= Duration::ZERO)
-        }
-        Part::RequirementUpper(index) => {
-            let requirement = network.requirements()[index];
-            requirement.lower == Bound::Infinite
-                && requirement.upper.finite().is_some_and(|upper| upper <= Duration::ZERO)
-        }
-        _ => matches!(part, Part::DelayMax(_)),
-    }
 }
 
 fn is_called(origin: &Origin, name: &str) -> bool {
@@ -337,7 +290,7 @@ pub fn what(part: Part, origin: &Origin) -> Option<String> {
     let Origin { subject, end, .. } = origin;
     let text = match (origin.kind, part) {
         (_, Part::DelayMin(_) | Part::DelayMax(_)) => format!("how late {end} is heard"),
-        (OriginKind::Between | OriginKind::Requirement, _) => subject.clone(),
+        (OriginKind::Between | OriginKind::Requirement, _) => subject.to_string(),
         (OriginKind::Link, _) => format!("{subject}, Nature decides"),
         (OriginKind::Contingent, _) => format!("how long {subject} takes, Nature decides"),
         (OriginKind::Duration | OriginKind::Constraint, _) => format!("how long {subject} takes"),

@@ -42,9 +42,9 @@ fn the_antennas_have_every_constraint_of_the_figure_for_any_number_of_rovers() {
             .unwrap_or_else(|| panic!("{}", common::diagnostics(&text, &compiled.diagnostics)));
         let rounds = rovers * antennas;
         assert_eq!(plan.network.contingents().len(), 2 * rounds);
-        let across: Vec<&str> = (plan.origins.requirements.iter())
+        let across: Vec<String> = (plan.origins.requirements.iter())
             .filter(|origin| origin.kind == kirk_compiler::OriginKind::Between)
-            .map(|origin| origin.subject.as_str())
+            .map(|origin| origin.subject.to_string())
             .collect();
         assert_eq!(across.len(), (rovers - 1) * antennas);
         // The confirmation of rover 1 for antenna 0 comes right after those of rover 0.

@@ -23,6 +23,7 @@ use crate::check::{Verdict, check};
 use crate::conflict::Part;
 use crate::least::{could_settle, least_changes};
 use crate::model::Network;
+use crate::slack::bounds;
 use crate::stnu::TooLarge;
 use crate::time::{Bound, Duration};
 use crate::vary::{Change, Knob};
@@ -218,31 +219,12 @@ fn cheapest(search: &mut Search<'_>, known: Vec<Plan>, limit: usize) -> Vec<Plan
     plans
 }
 
-/// The bounds that are ours: those of requirements, and by when news must be here. None is to lose its sense: what takes time
-/// is never to take less than none, nor to come before what it comes after.
+/// The bounds that are ours, none of which is to lose its sense: those of requirements, and by when news must be here.
 pub fn ours(network: &Network) -> Vec<Knob> {
-    let requirements = network.requirements().iter().enumerate().flat_map(|(index, requirement)| {
-        let knob = |part, value: Bound, meant: fn(Duration) -> bool| {
-            let value = value.finite()?;
-            let knob = Knob::of(part)?;
-            Some(if meant(value) { knob.limited(Duration::ZERO) } else { knob })
-        };
-        let lower = knob(Part::RequirementLower(index), requirement.lower, |lower| lower >= Duration::ZERO);
-        let order = requirement.lower.finite().is_none();
-        let upper = match order {
-            true => knob(Part::RequirementUpper(index), requirement.upper, |upper| upper <= Duration::ZERO),
-            false => knob(Part::RequirementUpper(index), requirement.upper, |_| false),
-        };
-        [lower, upper].into_iter().flatten()
-    });
-    let late = |index: &usize| network.contingents()[*index].delay.max != Bound::Finite(Duration::ZERO);
-    let news =
-        (0..network.contingents().len()).filter(late).filter_map(|link| Knob::of(Part::DelayMax(link)));
-    requirements.chain(news).collect()
-}
-
-/// The bounds that are Nature's: of the durations she chooses.
-pub fn natures(network: &Network) -> Vec<Knob> {
-    let links = 0..network.contingents().len();
-    links.flat_map(|link| [Part::LinkLower(link), Part::LinkUpper(link)]).filter_map(Knob::of).collect()
+    let is_ours = |knob: &Knob| match knob.parts()[0] {
+        Part::RequirementLower(_) | Part::RequirementUpper(_) => true,
+        Part::DelayMax(_) => knob.value(network) != Bound::Finite(Duration::ZERO),
+        _ => false,
+    };
+    bounds(network).into_iter().filter(is_ours).map(|knob| knob.in_its_sense(network)).collect()
 }

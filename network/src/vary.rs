@@ -51,6 +51,22 @@ impl Knob {
         Knob { limit: Some(limit), ..self }
     }
 
+    /// The same, never to lose its sense: what takes time is to take no less than none, what comes after something is to go on
+    /// to, and no news is there before what it tells.
+    #[must_use]
+    pub fn in_its_sense(self, network: &Network) -> Knob {
+        let value = self.value(network).finite();
+        let keeps_order = match self.parts[0] {
+            Part::RequirementLower(_) => value.is_some_and(|lower| lower >= Duration::ZERO),
+            Part::RequirementUpper(index) => {
+                let is_order = network.requirements()[index].lower == Bound::Infinite;
+                is_order && value.is_some_and(|upper| upper <= Duration::ZERO)
+            }
+            part => matches!(part, Part::DelayMax(_)),
+        };
+        if keeps_order { self.limited(Duration::ZERO) } else { self }
+    }
+
     /// The bounds, in order. The value of the first stands for all.
     pub fn parts(&self) -> &[Part] {
         &self.parts

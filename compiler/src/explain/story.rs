@@ -24,9 +24,11 @@ pub(super) fn story(
     let needed = sum(steps.iter().map(|step| step.needs).filter(|needs| *needs > Duration::ZERO));
     let there = -sum(steps.iter().map(|step| step.needs).filter(|needs| *needs < Duration::ZERO));
     let told = steps.iter().filter(|step| is_circle || step.needs != Duration::ZERO);
-    let mut texts: Vec<String> = told.filter_map(|step| say(step, origins, sources)).collect();
-    if let Some(first) = texts.first_mut() {
-        *first = first.trim_start_matches("but ").to_string();
+    let mut texts: Vec<String> = Vec::new();
+    for step in told {
+        // There is a "but" only to what was said before.
+        let but = if texts.is_empty() { "" } else { "but " };
+        texts.extend(say(step, origins, sources, but));
     }
     if texts.is_empty() {
         return None;
@@ -61,15 +63,15 @@ fn sum(amounts: impl Iterator<Item = Duration>) -> Duration {
 }
 
 /// One step; `None` for what goes without saying.
-fn say(step: &Step, origins: &Origins, sources: &[Source]) -> Option<String> {
+fn say(step: &Step, origins: &Origins, sources: &[Source], but: &str) -> Option<String> {
     let (origin, side) = origins.of(step.part)?;
-    let written = |needs: Duration| amount(needs.abs(), origin.places[side], sources);
+    let written = |needs: Duration| amount(needs.abs(), origin.place(side), sources);
     let Origin { kind, text, end, .. } = origin;
     Some(match step.part {
         Part::LinkUpper(_) => format!("Nature may take {} {}", written(step.needs), origin.about()),
-        Part::LinkLower(_) => format!("but Nature may take only {} {}", written(step.needs), origin.about()),
+        Part::LinkLower(_) => format!("{but}Nature may take only {} {}", written(step.needs), origin.about()),
         Part::DelayMax(_) => format!("the news of {end} may take {}", written(step.needs)),
-        Part::DelayMin(_) => format!("but the news of {end} may take only {}", written(step.needs)),
+        Part::DelayMin(_) => format!("{but}the news of {end} may take only {}", written(step.needs)),
         _ if !kind.is_amount() => text.clone(),
         _ if step.needs == Duration::ZERO => format!("the order {}", origin.about()),
         Part::RequirementLower(_) if step.needs > Duration::ZERO => {

@@ -5,7 +5,7 @@ use kirk_network::vary::Change;
 use kirk_network::{Bound, Duration, Network, Part};
 
 use crate::diagnostic::{Edit, Text};
-use crate::origins::{Origin, OriginKind};
+use crate::origins::{Origin, OriginKind, Side};
 use crate::source::{Source, Span};
 use crate::words;
 
@@ -82,22 +82,12 @@ pub(super) fn step(place: Span, value: Bound, sources: &[Source]) -> Duration {
 pub(super) fn is_written(part: Part, origin: &Origin, sources: &[Source]) -> bool {
     match origin.kind {
         OriginKind::Requirement | OriginKind::Link => true,
-        _ => place_of(part, origin).is_some_and(|place| {
+        _ => Side::of(part).is_some_and(|side| {
+            let place = origin.place(side);
             let text = slice(place, sources);
             place != origin.span && !text.is_empty() && !text.starts_with("(simple")
         }),
     }
-}
-
-fn place_of(part: Part, origin: &Origin) -> Option<Span> {
-    let which = match part {
-        Part::RequirementLower(_) | Part::LinkLower(_) => 0,
-        Part::RequirementUpper(_) | Part::LinkUpper(_) => 1,
-        Part::DelayMin(_) => 2,
-        Part::DelayMax(_) => 3,
-        Part::AfterOrigin | Part::Join(_) => return None,
-    };
-    Some(origin.places[which])
 }
 
 /// The change of the source. Of a file in which amounts have no place of their own it is nothing.
@@ -126,7 +116,7 @@ pub(super) fn edits(change: &Change, network: &Network, origin: &Origin, sources
 }
 
 fn edit(part: Part, from: Bound, to: Duration, origin: &Origin, sources: &[Source]) -> Option<Edit> {
-    let place = place_of(part, origin)?;
+    let place = origin.place(Side::of(part)?);
     let edit = |span: Span, text: String| Edit { span, text: Text::Plain(text) };
     if matches!(origin.kind, OriginKind::Requirement | OriginKind::Link) {
         let at = json::amount_in(slice(place, sources), part)?;

@@ -71,8 +71,7 @@ impl Loosening {
 
     fn words(self, origin: &Origin) -> (String, String) {
         let Origin { subject, text, .. } = origin;
-        let form =
-            subject.strip_prefix("this ").map_or_else(|| subject.clone(), |form| format!("the {form}"));
+        let form = subject.elsewhere();
         match self {
             Loosening::Slack => (format!("slack (`:slack t`) in {form}"), format!("the slack of {form}")),
             Loosening::Order => (format!("without the order {subject}"), text.clone()),
@@ -105,7 +104,7 @@ fn spans(
     let parts = could_settle(network, conflict).into_iter().chain(members);
     let requirement = |part: Part| match part {
         Part::RequirementLower(index) | Part::RequirementUpper(index) | Part::Join(index) => {
-            Some((origins.requirements.get(index)?, network.requirements().get(index)?))
+            Some((origins.constraint(part)?, network.requirements().get(index)?))
         }
         _ => None,
     };

@@ -1,0 +1,51 @@
+//! The bounds that somebody has written: several of a network that are written once are one to whoever changes them.
+
+use std::collections::BTreeMap;
+
+use kirk_network::slack::bounds;
+use kirk_network::vary::Knob;
+use kirk_network::{Network, Part};
+
+use crate::origins::{Origin, Origins, Side};
+use crate::source::Span;
+
+/// A bound as it is written, with all that is read there.
+#[derive(Clone, Debug)]
+pub struct Written<'a> {
+    /// The bounds of the network; at least one.
+    pub parts: Vec<Part>,
+    /// Where the first of them comes from.
+    pub origin: &'a Origin,
+    /// Which of its amounts it is.
+    pub side: Side,
+}
+
+impl Written<'_> {
+    /// Where it is written.
+    pub fn place(&self) -> Span {
+        self.origin.place(self.side)
+    }
+
+    /// True if all that is read there has one value. An argument gives it several, and no one text says them all.
+    pub(crate) fn has_one_value(&self, network: &Network) -> bool {
+        let value = |part: &Part| Knob::of(*part).map(|knob| knob.value(network));
+        self.parts.iter().all(|part| value(part) == value(&self.parts[0]))
+    }
+}
+
+/// Those of a network for which something holds, in the order of their places.
+pub fn written<'a>(
+    network: &Network,
+    origins: &'a Origins,
+    is_meant: impl Fn(Part, &Origin) -> bool,
+) -> Vec<Written<'a>> {
+    let mut written: BTreeMap<(Span, Side), Written<'a>> = BTreeMap::new();
+    for part in bounds(network).iter().map(|knob| knob.parts()[0]) {
+        let Some((origin, side)) = origins.of(part) else { continue };
+        if origin.kind.is_amount() && is_meant(part, origin) {
+            let first = || Written { parts: Vec::new(), origin, side };
+            written.entry((origin.place(side), side)).or_insert_with(first).parts.push(part);
+        }
+    }
+    written.into_values().collect()
+}

@@ -5,7 +5,7 @@
 mod binary;
 
 use std::fs::{self, File};
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
@@ -107,6 +107,52 @@ fn a_mission_that_is_stopped_waits_for_what_the_driver_is_at() {
     let resumed = kirk(&["resume", &desk.journal(), "--format", "json"]);
     assert_eq!(execution(&resumed)["outcome"], "completed", "{}", stderr(&resumed));
     assert_eq!(desk.lines("log"), ["begun", "done"], "it is not begun again");
+}
+
+#[test]
+fn a_mission_that_is_stopped_before_its_driver_is_up_can_be_gone_on_with() {
+    let desk = Desk::new();
+    let command =
+        format!("echo asked >> {}; test -e {}", desk.path("log").display(), desk.path("up").display());
+    let options = ["--driver-command", &command, "--wait-for-driver", "60", "--speed", "10"];
+    let mission = desk.run("tests/live/field.rmpl", &options);
+    until("it is asked for", || !desk.lines("log").is_empty());
+    interrupt(&mission);
+    let output = mission.wait_with_output().unwrap();
+    let stopped = execution(&output);
+    assert_eq!(
+        (output.status.code(), &stopped["failure"]["reason"]),
+        (Some(1), &"stopped".into()),
+        "{stopped}"
+    );
+    fs::write(desk.path("up"), "").unwrap();
+    let resumed = kirk(&["resume", &desk.journal(), "--format", "json"]);
+    assert_eq!(execution(&resumed)["outcome"], "completed", "{}", stderr(&resumed));
+}
+
+#[test]
+fn news_that_cannot_be_recorded_is_not_acknowledged() {
+    let desk = Desk::new();
+    let mut mission = desk.run("tests/live/field.rmpl", &["--port", "0"]);
+    let mut said = BufReader::new(mission.stderr.take().unwrap()).lines();
+    let heard_at = |line: Result<String, _>| {
+        line.unwrap()
+            .strip_prefix("news is heard at http://")
+            .map(|rest| rest.trim_end_matches('/').to_string())
+    };
+    let address = said.find_map(heard_at).unwrap();
+    let mut stream = TcpStream::connect(address).unwrap();
+    stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
+    // It is not noticed before something is written.
+    fs::remove_file(desk.path("journal")).unwrap();
+    let body = r#"{"event-ids": ["fly:end"]}"#;
+    write!(stream, "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: {}\r\n\r\n{body}", body.len())
+        .unwrap();
+    let mut answer = String::new();
+    let _ = stream.read_to_string(&mut answer);
+    assert!(!answer.contains("fly:end"), "{answer}");
+    let ended = mission.wait_with_output().unwrap();
+    assert_eq!(execution(&ended)["failure"]["reason"], "journal-failed");
 }
 
 #[test]

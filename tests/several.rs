@@ -165,4 +165,8 @@ fn a_file_that_names_others_is_one_program_with_them() {
     let (status, _, messages) = run(&files[1..], &["check", "b.rmpl"]);
     assert_eq!(status, Some(2));
     assert!(messages.contains("b.rmpl:1:17") && messages.contains("there is no such file"), "{messages}");
+    let stdin = ("b.rmpl", ";;; kirk: files -\n(define-control-program main () (delay 1))");
+    let (status, _, messages) = run(&[stdin], &["check", "b.rmpl"]);
+    assert_eq!(status, Some(2), "standard input is no file: {messages}");
+    assert!(messages.contains("b.rmpl:1:17"), "{messages}");
 }

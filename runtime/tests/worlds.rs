@@ -75,6 +75,21 @@ fn drive(executive: &mut Executive) -> EventId {
 }
 
 #[test]
+fn a_mission_does_not_wait_for_a_plan_that_cannot_be_made() {
+    let mut executive = executive();
+    let end = drive(&mut executive);
+    assert!(hear(&mut executive, second(6), end));
+    let rebuild = executive.poll_rebuild(second(6)).unwrap();
+    executive.handle(second(7), Input::rebuilt(rebuild.without_plan()));
+    assert!(
+        executive.is_over() || executive.poll_timeout().is_some(),
+        "it waits for something that never comes"
+    );
+    let execution = executive.execution(second(7), false);
+    assert_eq!(execution.failure.map(|failure| failure.reason), Some(Reason::BrokenModel));
+}
+
+#[test]
 fn news_that_is_too_early_is_taken_for_true_and_the_mission_goes_on() {
     let mut executive = executive();
     let end = drive(&mut executive);

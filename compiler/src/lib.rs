@@ -90,7 +90,7 @@ mod unfold;
 pub mod words;
 mod written;
 
-pub use analyse::symbols::{Place, Symbol, SymbolKind, Symbols, Uses};
+pub use analyse::symbols::{Mention, Symbol, SymbolKind, Symbols, Uses};
 pub use code::{Code, explain};
 pub use companions::{Companion, companions};
 pub use diagnostic::{Diagnostic, Edit, Label, Severity, Suggestion, Text};

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use kirk_compiler::read::{TokenKind, tokens};
 use kirk_compiler::words::word;
-use kirk_compiler::{Place, Severity, Span, Symbol, SymbolKind, Symbols};
+use kirk_compiler::{Mention, Severity, Span, Symbol, SymbolKind, Symbols};
 
 use crate::analysis::Analysis;
 use crate::cursor::pointed_at;
@@ -111,7 +111,7 @@ pub fn edited(text: &str, edits: &[(Span, String)]) -> String {
 }
 
 /// The first place after a renaming that belongs together with others than before.
-fn difference(before: &Symbols, after: &Symbols) -> Option<Place> {
+fn difference(before: &Symbols, after: &Symbols) -> Option<Mention> {
     let numbered = |symbols: &Symbols| {
         let mut seen: BTreeMap<*const Symbol, usize> = BTreeMap::new();
         let mut number = |symbol: &Symbol| {
@@ -121,7 +121,7 @@ fn difference(before: &Symbols, after: &Symbols) -> Option<Place> {
         symbols.places().map(|(place, symbol)| (place.span, number(symbol))).collect::<Vec<(Span, usize)>>()
     };
     let (before, after) = (numbered(before), numbered(after));
-    let place = |span: Span| Place { span, definition: false };
+    let place = |span: Span| Mention { span, definition: false };
     let differs = before.iter().zip(&after).find(|((_, before), (_, after))| before != after);
     match differs {
         Some((_, (span, _))) => Some(place(*span)),

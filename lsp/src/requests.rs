@@ -21,8 +21,8 @@ type Answer<R> = Result<<R as request::Request>::Result, Refusal>;
 
 /// Answers a request.
 pub(crate) fn answer(server: &mut Server, request: Request) -> Response {
-    let mut dispatcher = Dispatcher { server, request, response: None };
-    dispatcher
+    let mut router = Router { server, request, response: None };
+    router
         .on::<HoverRequest>(answers::hover)
         .on::<GotoDefinition>(answers::definition)
         .on::<References>(answers::references)
@@ -50,13 +50,13 @@ fn failed(why: String) -> Refusal {
 }
 
 /// Finds the one who answers.
-struct Dispatcher<'a> {
+struct Router<'a> {
     server: &'a mut Server,
     request: Request,
     response: Option<Response>,
 }
 
-impl Dispatcher<'_> {
+impl Router<'_> {
     fn on<R>(&mut self, answer: impl FnOnce(&mut Server, R::Params) -> Answer<R>) -> &mut Self
     where
         R: request::Request,

@@ -14,7 +14,7 @@ pub struct Symbol {
     /// Its name, in lower case.
     pub name: String,
     /// Where it stands, in source order, with the package if one is written before it.
-    pub places: Vec<Place>,
+    pub places: Vec<Mention>,
 }
 
 /// The kinds of things that have names.
@@ -40,9 +40,9 @@ pub enum SymbolKind {
     Package,
 }
 
-/// One place where a name stands.
+/// One place where a name is mentioned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Place {
+pub struct Mention {
     /// The name.
     pub span: Span,
     /// True if the thing is defined here.
@@ -55,12 +55,12 @@ pub struct Symbols {
     /// In no particular order but a stable one.
     pub symbols: Vec<Symbol>,
     /// All places with the number of the symbol, sorted.
-    places: Vec<(Place, u32)>,
+    places: Vec<(Mention, u32)>,
 }
 
 impl Symbols {
     /// The symbol whose name stands at a byte of a source, or ends there, and that place.
-    pub fn at(&self, source: u32, offset: u32) -> Option<(&Symbol, Place)> {
+    pub fn at(&self, source: u32, offset: u32) -> Option<(&Symbol, Mention)> {
         let is_before = |span: Span| (span.source, span.start) <= (source, offset);
         let after = self.places.partition_point(|(place, _)| is_before(place.span));
         let (place, symbol) = self.places[..after].last().copied()?;
@@ -71,7 +71,7 @@ impl Symbols {
     }
 
     /// Every place with its symbol, in source order.
-    pub fn places(&self) -> impl Iterator<Item = (Place, &Symbol)> {
+    pub fn places(&self) -> impl Iterator<Item = (Mention, &Symbol)> {
         self.places.iter().map(|(place, symbol)| (*place, &self.symbols[*symbol as usize]))
     }
 }
@@ -139,13 +139,13 @@ impl Uses {
         if known.is_none() {
             self.symbols.push(Symbol { kind, name: name.name.clone(), places: Vec::new() });
         }
-        self.symbols[symbol].places.push(Place { span: name.span, definition: true });
+        self.symbols[symbol].places.push(Mention { span: name.span, definition: true });
         symbol
     }
 
     /// Takes down that a symbol is named.
     pub(super) fn place(&mut self, symbol: usize, span: Span) {
-        self.symbols[symbol].places.push(Place { span, definition: false });
+        self.symbols[symbol].places.push(Mention { span, definition: false });
     }
 
     /// Takes down that a program, a named number or a class is named.

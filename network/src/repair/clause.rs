@@ -134,13 +134,13 @@ pub(super) fn ask(
     plan: &Plan,
 ) -> Result<Answer, TooLarge> {
     let merged = merge_but(changed, &levers.apart);
-    let place = Place { original, changed, merged: &merged, levers, plan };
+    let site = Site { original, changed, merged: &merged, levers, plan };
     let alternatives = match reduce(&merged.network) {
         Err(ReduceError::TooLarge) => return Err(TooLarge),
         Err(ReduceError::Never(violation)) => {
             let tally = violation.tally(&merged.network)?;
-            let mut clause = vec![place.not_negative(&tally)?];
-            clause.extend(place.joined_otherwise(&tally));
+            let mut clause = vec![site.not_negative(&tally)?];
+            clause.extend(site.joined_otherwise(&tally));
             clause
         }
         Ok(reduction) => {
@@ -148,13 +148,13 @@ pub(super) fn ask(
                 return Ok(Answer::Controllable);
             };
             let tally = reduction.tally(&merged.network, &cycle.steps);
-            let mut clause = vec![place.not_negative(&tally)?];
+            let mut clause = vec![site.not_negative(&tally)?];
             for way in &ahead {
-                clause.push(place.not_negative(&reduction.tally(&merged.network, way))?);
+                clause.push(site.not_negative(&reduction.tally(&merged.network, way))?);
             }
             clause.dedup();
-            clause.extend(place.heard_otherwise(&tally, &reduction));
-            clause.extend(place.joined_otherwise(&tally));
+            clause.extend(site.heard_otherwise(&tally, &reduction));
+            clause.extend(site.joined_otherwise(&tally));
             clause
         }
     };
@@ -164,7 +164,7 @@ pub(super) fn ask(
 }
 
 /// Where a conflict was found.
-struct Place<'a> {
+struct Site<'a> {
     original: &'a Network,
     changed: &'a Network,
     merged: &'a Merged,
@@ -172,7 +172,7 @@ struct Place<'a> {
     plan: &'a Plan,
 }
 
-impl Place<'_> {
+impl Site<'_> {
     /// That what is taken in all is not negative.
     fn not_negative(&self, tally: &Tally<'_>) -> Result<Inequality, TooLarge> {
         let mut factors: Vec<(Part, i64)> = Vec::new();

@@ -87,6 +87,7 @@ mod sexpr;
 mod source;
 pub mod typed;
 mod unfold;
+mod wording;
 pub mod words;
 mod written;
 

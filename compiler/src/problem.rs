@@ -28,8 +28,11 @@ pub struct Problems {
 }
 
 impl Problems {
-    /// Reports a problem, unless the same code was already reported for the same place.
-    pub fn push(&mut self, diagnostic: Diagnostic) {
+    /// Reports a problem, unless the same code was already reported for the same place. Not inlined: forms nest, and its words
+    /// would take room on the stack at every level.
+    #[inline(never)]
+    pub fn push(&mut self, problem: impl Into<Diagnostic>) {
+        let diagnostic = problem.into();
         if self.is_muted(diagnostic.span) {
             return;
         }
@@ -45,7 +48,7 @@ impl Problems {
     }
 
     /// Reports all of these.
-    pub fn extend(&mut self, problems: impl IntoIterator<Item = Diagnostic>) {
+    pub fn extend(&mut self, problems: impl IntoIterator<Item = impl Into<Diagnostic>>) {
         problems.into_iter().for_each(|problem| self.push(problem));
     }
 

@@ -6,15 +6,15 @@
 
 mod damage;
 pub(crate) mod foreign;
+pub(crate) mod problem;
 mod token;
 
-use crate::code::Code;
-use crate::diagnostic::{Diagnostic, Edit};
 use crate::form::{Form, FormKind, Symbol};
 use crate::problem::Problems;
 use crate::source::{Source, Span};
-use damage::{unreadable, with_comma};
+use damage::with_commas;
 use foreign::{Found, begins_definition, foreign_text, foreign_token};
+use problem::{ForeignToken, Problem};
 pub(crate) use token::Tokens;
 
 pub use token::{Token, TokenKind, tokens};
@@ -30,12 +30,7 @@ pub fn read(source: &Source, index: u32, problems: &mut Problems) -> Vec<Form> {
     if source.text.len() > MAX_LENGTH {
         let at = (MAX_LENGTH..source.text.len()).find(|at| source.text.is_char_boundary(*at));
         let end = Span::new(index, at.unwrap_or(0), at.unwrap_or(0));
-        let message = format!("this source is longer than {} MiB", MAX_LENGTH >> 20);
-        problems.push(
-            Diagnostic::error(Code::TooLong, end, message)
-                .primary("kirk reads no further than here")
-                .help("Is this the file you meant? No mission that can be executed is that long."),
-        );
+        problems.push(Problem::TooLong { end });
         problems.lose_definitions();
         return Vec::new();
     }
@@ -50,16 +45,8 @@ pub fn read(source: &Source, index: u32, problems: &mut Problems) -> Vec<Form> {
     let forms = reader.forms;
     if forms.is_empty() && clean && !problems.has_errors() {
         problems.lose_definitions();
-        let message = if source.text.trim().is_empty() {
-            "this source is empty"
-        } else {
-            "this source contains comments but no program"
-        };
-        problems.push(
-            Diagnostic::error(Code::EmptySource, Span::new(index, 0, 0), message)
-                .primary("a program was expected")
-                .help("The smallest program is `(define-control-program main () (sequence ()))`."),
-        );
+        let comments = !source.text.trim().is_empty();
+        problems.push(Problem::Empty { start: Span::new(index, 0, 0), comments });
     }
     forms
 }
@@ -157,12 +144,8 @@ impl<'a> Reader<'a> {
                 TokenKind::Quote if self.stack.is_empty() => self.stray(token),
                 TokenKind::Quote => self.push(token.start, Mark::Quote),
                 TokenKind::UnclosedComment => {
-                    let span = self.span(token.start, token.start + 2);
-                    self.problems.push(
-                        Diagnostic::error(Code::UnclosedComment, span, "this comment is never closed")
-                            .primary("`#|` opens a comment here; `|#` was expected before the end of the text")
-                            .help("Everything after it was left out. A comment to the end of one line begins with `;`."),
-                    );
+                    let mark = self.span(token.start, token.start + 2);
+                    self.problems.push(Problem::UnclosedComment { mark });
                     self.problems.lose_definitions();
                     break;
                 }
@@ -201,15 +184,7 @@ impl<'a> Reader<'a> {
         if self.skipped > 0 || self.stack.len() >= MAX_NESTING {
             if self.skipped == 0 && !std::mem::replace(&mut self.too_deep, true) {
                 let span = self.span(at, at + 1);
-                self.problems.push(
-                    Diagnostic::error(
-                        Code::TooDeep,
-                        span,
-                        format!("forms are nested more than {MAX_NESTING} deep"),
-                    )
-                    .primary("this is one level too many")
-                    .help("Give the inner part a name of its own with `define-control-program` and call it."),
-                );
+                self.problems.push(Problem::TooDeep { at: span });
                 if let Some(top) = self.stack.last_mut() {
                     top.items.push(Form { span, kind: FormKind::Error });
                 }
@@ -259,11 +234,7 @@ impl<'a> Reader<'a> {
             dangling = Some(top.at);
         }
         if let Some(at) = dangling {
-            let span = self.span(at, at + 1);
-            self.problems.push(
-                Diagnostic::error(Code::Unreadable, span, "nothing follows this quote")
-                    .primary("a form was expected after `'`"),
-            );
+            self.problems.push(Problem::NothingQuoted { quote: self.span(at, at + 1) });
         }
         match self.stack.pop() {
             Some(mut open) => {
@@ -328,24 +299,20 @@ impl<'a> Reader<'a> {
     /// Reports comments and strings as they are written elsewhere, and goes on behind them.
     fn skipped_as_foreign(&mut self, token: Token) -> bool {
         let Some(found) = foreign_token(&self.text[token.start..]) else { return false };
-        let Found { length, open, close, instead: [begin, finish], problem } = found;
+        let Found { is, length, open, close } = found;
         let end = token.start + length;
         let shown = self.text[token.start..end].lines().next().unwrap_or("");
-        let mut problem = problem(self.span(token.start, token.start + shown.len()));
-        if !begin.is_empty() {
-            let edits = [
-                Edit::replace(self.span(token.start, token.start + open), begin),
-                Edit::replace(self.span(end - close, end), finish),
-            ];
-            let edits = edits.into_iter().filter(|edit| edit.span.start < edit.span.end);
-            problem = problem.suggest(format!("Write it as `{begin}...{finish}`"), edits);
-        }
-        self.problems.push(problem);
+        self.problems.push(Problem::ForeignToken {
+            at: self.span(token.start, token.start + shown.len()),
+            is,
+            open: self.span(token.start, token.start + open),
+            close: self.span(end - close, end),
+        });
         self.tokens.seek(end);
         // What it was meant for is there all the same.
-        match begin {
-            "'" => self.push(token.start, Mark::Quote),
-            "\"" if self.skipped == 0 => {
+        match is {
+            ForeignToken::Quote => self.push(token.start, Mark::Quote),
+            ForeignToken::String if self.skipped == 0 => {
                 let words = self.text[token.start + open..end - close].to_string();
                 self.finish(Form { span: self.span(token.start, end), kind: FormKind::String(words) });
             }
@@ -363,20 +330,19 @@ impl<'a> Reader<'a> {
             self.close(token);
             return;
         }
-        let problem = unreadable(text, span);
-        self.problems.push(match text {
+        let closed = match text {
+            "[" | "{" if self.problems.wants(self.source) => self.closing_bracket(),
+            _ => None,
+        };
+        self.problems.push(match (text, closed) {
             // Before a blank it is no mark of Lisp.
-            "," if self.text[token.end..].starts_with(char::is_whitespace) => {
-                problem.take_out("the comma", span)
+            (",", _) if self.text[token.end..].starts_with(char::is_whitespace) => {
+                Problem::LoneComma { at: span }
             }
-            "[" | "{" if self.problems.wants(self.source) => match self.closing_bracket() {
-                Some(close) => problem.suggest(
-                    "Change to round parentheses",
-                    [Edit::replace(span, "("), Edit::replace(self.span(close, close + 1), ")")],
-                ),
-                None => problem,
-            },
-            _ => problem,
+            (bracket, Some(close)) => {
+                Problem::Brackets { open: span, close: self.span(close, close + 1), bracket }
+            }
+            _ => Problem::Unreadable { at: span, text },
         });
         match text {
             "[" | "{" => self.push(token.start, Mark::Bracket),
@@ -410,23 +376,15 @@ impl<'a> Reader<'a> {
 
     /// Reports a number with a comma in it, and goes on behind it.
     fn skipped_as_number(&mut self, token: Token) -> bool {
-        let Some((length, plain, what)) = with_comma(&self.text[token.start..]) else { return false };
-        let span = self.span(token.start, token.start + length);
-        self.problems.push(
-            Diagnostic::error(
-                Code::Unreadable,
-                span,
-                format!("`{}` is no number", &self.text[token.start..token.start + length]),
-            )
-            .primary(what)
-            .help(format!("Numbers are written without commas: `{plain}`."))
-            .change(span, plain),
-        );
+        let Some((number, commas)) = with_commas(&self.text[token.start..]) else { return false };
+        let end = token.start + number.len();
+        let span = self.span(token.start, end);
+        self.problems.push(Problem::NumberWithCommas { at: span, number, commas });
         if self.skipped == 0 {
             self.note_item(token.start);
             self.finish(Form { span, kind: FormKind::Error });
         }
-        self.tokens.seek(token.start + length);
+        self.tokens.seek(end);
         true
     }
 
@@ -434,22 +392,14 @@ impl<'a> Reader<'a> {
     fn string_goes_on(&mut self, token: Token) {
         let line = self.text[token.end..].lines().next().unwrap_or("");
         let end = line.rfind('"').map_or(token.end, |at| token.end + at + 1);
-        let mut problem = Diagnostic::error(
-            Code::UnclosedString,
-            self.span(token.end - 1, token.end),
-            "this quotation mark ends the string",
-        )
-        .primary("and words follow without a blank")
-        .label(self.span(token.start, token.start + 1), "the string begins here")
-        .help("Inside a string, a quotation mark is written `\\\"`.");
         // All but the last one are inside.
         let marks = self.text[token.end - 1..end].match_indices('"').map(|(at, _)| token.end - 1 + at);
-        let inner: Vec<Edit> =
-            marks.filter(|at| at + 1 < end).map(|at| Edit::before(self.span(at, at), "\\")).collect();
-        if !inner.is_empty() {
-            problem = problem.suggest("Make the quotation marks part of the string", inner);
-        }
-        self.problems.push(problem);
+        let inside = marks.filter(|at| at + 1 < end).map(|at| self.span(at, at)).collect();
+        self.problems.push(Problem::StringGoesOn {
+            start: self.span(token.start, token.start + 1),
+            end: self.span(token.end - 1, token.end),
+            inside,
+        });
         if self.skipped == 0 {
             self.finish(Form { span: self.span(token.start, end), kind: FormKind::Error });
         }
@@ -458,19 +408,15 @@ impl<'a> Reader<'a> {
 
     /// Reports a string without an end and goes on with the line after the one it begins on.
     fn unclosed_string(&mut self, at: usize) {
-        let mut problem =
-            Diagnostic::error(Code::UnclosedString, self.span(at, at + 1), "this string is never closed")
-                .primary("the string begins here; a closing `\"` was expected")
-                .help("Inside a string, a quotation mark is written `\\\"`.");
         // Where the forms around it are closed on the same line, it ends before that.
         let line = self.text[at + 1..].lines().next().unwrap_or("").trim_end();
         let words = line.trim_end_matches(')');
-        if !words.is_empty() && words.len() < line.len() && !words.contains(['(', ')', '"']) {
-            let end = at + 1 + words.len();
-            problem =
-                problem.suggest("Close it before the parenthesis", [Edit::before(self.span(end, end), "\"")]);
-        }
-        self.problems.push(problem);
+        let ends = !words.is_empty() && words.len() < line.len() && !words.contains(['(', ')', '"']);
+        let end = at + 1 + words.len();
+        self.problems.push(Problem::UnclosedString {
+            mark: self.span(at, at + 1),
+            end: ends.then(|| self.span(end, end)),
+        });
         let line_end = self.text[at..].find('\n').map_or(self.text.len(), |n| at + n);
         if self.skipped == 0 {
             let span = self.span(at, line_end);

@@ -1,10 +1,9 @@
 //! What is damaged in a text: parentheses that do not pair, words outside of all forms, characters without a meaning.
 
 use super::foreign::{begins_definition, foreign_line, is_prompt};
+use super::problem::{Commas, Foreign, Problem, StrayClose, Unclosed};
 use super::{Reader, Token, TokenKind};
-use crate::code::Code;
-use crate::diagnostic::{Diagnostic, Edit};
-use crate::form::{Form, FormKind, clip};
+use crate::form::{Form, FormKind};
 use crate::source::Span;
 
 impl Reader<'_> {
@@ -25,8 +24,7 @@ impl Reader<'_> {
         let line = self.text[token.start..].lines().next().unwrap_or("").trim_end();
         let span = self.span(token.start, token.start + line.len());
         self.pasted(span);
-        let problem = foreign("what was typed at a shell prompt", span);
-        self.problems.push(problem.suggest("Make a comment of it", [Edit::before(span, "; ")]));
+        self.problems.push(Problem::ForeignLines { first: span, is: Foreign::Prompt, lines: vec![span] });
         self.tokens.seek(token.start + line.len());
     }
 
@@ -50,37 +48,19 @@ impl Reader<'_> {
             .filter(|word| !word.is_empty())
             .take(words)
             .collect();
-        let name = shown.join(" ");
-        let what = match missing {
-            1 => "a `)` is missing".to_string(),
-            _ => format!("{missing} `)` are missing"),
-        };
-        let mut problem = Diagnostic::error(
-            Code::UnclosedForm,
-            self.span(at, at + 1),
-            format!("the form `{}` is never closed", clip(&name)),
-        )
-        .primary(format!("{what} for the form that is open here"));
-        if at != outermost {
-            problem =
-                problem.label(self.span(outermost, outermost + 1), "inside the definition that begins here");
-        }
-        problem = match next {
-            Some(next) => {
-                problem.label(self.span(next, next + 1), "the next definition begins before it is closed")
-            }
-            None => problem.help("The text ends while it is still open: is the end of the file missing?"),
-        };
         // Where the lines are indented as if a form inside were closed, it ends before them, if it is the only one.
         let close_at = match self.suspect {
             Some(suspect) => (missing == 1).then_some(suspect.end),
             None => Some(self.last_end),
         };
-        if let Some(end) = close_at.filter(|_| self.skipped == 0) {
-            let end = self.span(end, end);
-            problem = problem.suggest("Close what is open", [Edit::before(end, ")".repeat(missing))]);
-        }
-        self.problems.push(problem);
+        self.problems.push(Problem::Unclosed(Unclosed {
+            at: self.span(at, at + 1),
+            begins: shown.join(" "),
+            missing,
+            definition: (at != outermost).then(|| self.span(outermost, outermost + 1)),
+            next: next.map(|next| self.span(next, next + 1)),
+            close: close_at.filter(|_| self.skipped == 0).map(|end| self.span(end, end)),
+        }));
         self.skipped = 0;
         // What there is of the form is kept, so that its name is known; other damage in it follows from this one.
         let end = next.unwrap_or(self.text.len());
@@ -131,38 +111,21 @@ impl Reader<'_> {
             }
         }
         let count = self.text[token.start..end].matches(')').count();
-        let message = match count {
-            1 => "this parenthesis closes nothing".to_string(),
-            _ => "these parentheses close nothing".to_string(),
-        };
-        let mut problem = Diagnostic::error(Code::StrayClose, self.span(token.start, end), message)
-            .primary(if count == 1 { "one `)` too many" } else { "too many `)`" });
-        if let Some(close) = closed_at {
-            problem = problem.label(
-                self.span(close.saturating_sub(1), close),
-                "the definition before it already ends here",
-            );
-        }
         let closed_early = self.closed_early.take();
-        if !fell_out && closed_early.is_none() {
-            problem = problem.take_out("what closes nothing", self.span(token.start, end));
-        }
-        let parentheses = ")".repeat(count);
-        if let Some(close) = closed_at.filter(|_| fell_out)
-            && self.text[..close].ends_with(&parentheses)
-        {
-            let what = format!("`{parentheses}` at the end of the definition");
-            problem = problem.take_out(&what, self.span(close - count, close));
-        }
-        if let Some((item, line)) = closed_early {
-            let word = self.text[item..].split(|c: char| c.is_whitespace() || c == ')').next().unwrap_or("");
-            let message = format!(
-                "this line is indented as if `{}` were still open: look at the parentheses just before it",
-                clip(word)
-            );
-            problem = problem.label(self.span(line, line + 1), message);
-        }
-        self.problems.push(problem);
+        let same_at_end = |close: &usize| self.text[..*close].ends_with(&")".repeat(count));
+        let first_word =
+            |at: usize| self.text[at..].split(|c: char| c.is_whitespace() || c == ')').next().unwrap_or("");
+        self.problems.push(Problem::StrayClose(StrayClose {
+            at: self.span(token.start, end),
+            count,
+            closed: closed_at.map(|close| self.span(close.saturating_sub(1), close)),
+            too_early: closed_at
+                .filter(|_| fell_out)
+                .filter(same_at_end)
+                .map(|close| self.span(close - count, close)),
+            are_the_ones: !fell_out && closed_early.is_none(),
+            indented: closed_early.map(|(form, line)| (first_word(form), self.span(line, line + 1))),
+        }));
         // Whatever else is wrong with the definition follows from that.
         if let (Some(_), Some(form)) = (closed_at, self.forms.last()) {
             self.problems.mute(form.span);
@@ -189,48 +152,31 @@ impl Reader<'_> {
         }
         let shown = self.text[token.start..end].trim_end();
         let mut at = token.start;
-        let comment: Vec<Edit> = shown
+        let lines: Vec<Span> = shown
             .split_inclusive('\n')
             .filter_map(|line| {
                 let here = self.span(at, at);
                 at += line.len();
-                (!line.trim().is_empty()).then(|| Edit::before(here, "; "))
+                (!line.trim().is_empty()).then_some(here)
             })
             .collect();
-        let first = shown.lines().next().unwrap_or("");
-        let span = self.span(token.start, token.start + first.trim_end().len());
+        let line = shown.lines().next().unwrap_or("");
+        let first = self.span(token.start, token.start + line.trim_end().len());
         if typed {
-            self.pasted(span);
+            self.pasted(first);
         }
-        let problem = match foreign_line(first) {
-            Some(what) => foreign(what, span),
-            None => Diagnostic::error(
-                Code::StrayText,
-                span,
-                format!(
-                    "`{}` stands outside every definition",
-                    clip(first.split_whitespace().next().unwrap_or(first))
-                ),
-            )
-            .primary("a definition in parentheses was expected here")
-            .help("A comment begins with `;`. A program is `(define-control-program name () ...)`."),
-        };
-        self.problems.push(problem.suggest("Make a comment of it", comment));
+        self.problems.push(match foreign_line(line) {
+            Some(is) => Problem::ForeignLines { first, is, lines },
+            None => Problem::Stray { first, word: line.split_whitespace().next().unwrap_or(line), lines },
+        });
         self.problems.lose_text(shown);
         self.tokens.seek(end.max(token.end.min(self.text.len())).max(token.start + 1));
         self.line_start = self.text[..self.tokens.position()].rfind('\n').map_or(0, |n| n + 1);
     }
 }
 
-/// A line of another language.
-fn foreign(what: &str, span: Span) -> Diagnostic {
-    Diagnostic::error(Code::NotRmpl, span, format!("this is {what}, not RMPL"))
-        .primary("a definition in parentheses was expected here")
-        .help("Take it out, or put `;` in front of it to make it a comment.")
-}
-
-/// A number at the beginning of a text that has commas in it: its length, what was meant, and what the commas are there for.
-pub(super) fn with_comma(text: &str) -> Option<(usize, String, &'static str)> {
+/// A number at the beginning of a text that has commas in it, and what those are there for.
+pub(super) fn with_commas(text: &str) -> Option<(&str, Commas)> {
     /// What is longer is no number.
     const LONGEST: usize = 100;
     let of_number = |b: &u8| b.is_ascii_digit() || matches!(b, b',' | b'.' | b'+' | b'-');
@@ -251,45 +197,9 @@ pub(super) fn with_comma(text: &str) -> Option<(usize, String, &'static str)> {
     }
     let thousands = groups.split(',').all(|group| group.len() == 3);
     match (thousands, decimals) {
-        (true, decimals) if decimals.is_none_or(digits) => {
-            Some((number.len(), number.replace(',', ""), "a comma between thousands"))
-        }
-        (false, None) if groups.contains(',') => {
-            Some((number.len(), number.replace(',', " "), "commas between numbers"))
-        }
-        (false, None) if digits(groups) => {
-            Some((number.len(), number.replace(',', "."), "a comma before decimals"))
-        }
+        (true, decimals) if decimals.is_none_or(digits) => Some((number, Commas::Thousands)),
+        (false, None) if groups.contains(',') => Some((number, Commas::Between)),
+        (false, None) if digits(groups) => Some((number, Commas::Decimal)),
         _ => None,
     }
-}
-
-pub(super) fn unreadable(text: &str, span: Span) -> Diagnostic {
-    let plain = |c: char| if c.is_control() { c.escape_debug().to_string() } else { c.to_string() };
-    let shown: String = clip(text).chars().map(plain).collect();
-    let (message, help) = match text.chars().next() {
-        Some(',') => (
-            "a comma has no meaning in RMPL".to_string(),
-            Some("Between the elements of a form there are blanks; a decimal number has a point: `1.5`."),
-        ),
-        Some('`') => (
-            format!("`{shown}` is for Lisp macros, which kirk does not run"),
-            Some("Write the form out as it should be."),
-        ),
-        Some('#') => (
-            format!("kirk does not read `{shown}`"),
-            Some("Of the forms that begin with `#`, kirk reads `#:name` and the comment `#| ... |#`."),
-        ),
-        Some('[' | ']' | '{' | '}') => {
-            (format!("`{shown}` has no meaning in RMPL"), Some("Forms are enclosed in round parentheses."))
-        }
-        Some('|' | '\\') => (
-            format!("kirk does not read `{shown}` in names"),
-            Some("Names are made of letters, digits and `-+*/<>=.!?%&$_~^@`."),
-        ),
-        _ => (format!("the character `{shown}` has no meaning here"), None),
-    };
-    Diagnostic::error(Code::Unreadable, span, message)
-        .primary("not RMPL")
-        .maybe_help(help.map(str::to_string))
 }

@@ -1,7 +1,6 @@
 //! Recognises text that is not RMPL at all, so that it earns one message and not fifty.
 
-use crate::code::Code;
-use crate::diagnostic::Diagnostic;
+use super::problem::{Foreign, ForeignToken, Problem};
 use crate::source::Span;
 use crate::words::DEFINITIONS;
 
@@ -16,7 +15,7 @@ pub(super) fn begins_definition(text: &str) -> bool {
 }
 
 /// Says what a text is that has nothing to do with RMPL, or is no text.
-pub(super) fn foreign_text(text: &str, source: u32) -> Option<Diagnostic> {
+pub(super) fn foreign_text(text: &str, source: u32) -> Option<Problem<'static>> {
     let odd = |c: char| c == '\u{FFFD}' || (c.is_control() && !matches!(c, '\n' | '\r' | '\t' | '\u{c}'));
     if text.starts_with("%PDF") || text.starts_with("PK\u{3}\u{4}") || text.contains('\0') {
         let at = text.find(odd).unwrap_or(0);
@@ -28,78 +27,69 @@ pub(super) fn foreign_text(text: &str, source: u32) -> Option<Diagnostic> {
         return Some(not_text(source, text, at));
     }
     let (start, line) = first_line(text)?;
-    let what = foreign_line(line)?;
+    let is = foreign_line(line)?;
     let has_definition = text.match_indices('(').any(|(at, _)| begins_definition(&text[at..]));
-    (!has_definition).then(|| {
-        Diagnostic::error(
-            Code::NotRmpl,
-            Span::new(source, start, start + line.trim_end().len()),
-            format!("this is {what}, not RMPL"),
-        )
-        .primary("a definition in parentheses was expected here")
-        .help("A mission begins like `(define-control-program main () (sequence (:slack t) (first) (second)))`.")
-    })
+    let line = Span::new(source, start, start + line.trim_end().len());
+    (!has_definition).then_some(Problem::ForeignText { line, is })
 }
 
 /// Names the language of a line that is certainly not RMPL.
-pub(super) fn foreign_line(line: &str) -> Option<&'static str> {
+pub(super) fn foreign_line(line: &str) -> Option<Foreign> {
     let line = line.trim();
     let first = line.split_whitespace().next().unwrap_or("");
     let starts = |words: &[&str]| words.iter().any(|word| line.starts_with(word));
     Some(if line.starts_with("#!") {
-        "a script for another program"
+        Foreign::Script
     } else if is_prompt(line) {
-        "what was typed at a shell prompt"
+        Foreign::Prompt
     } else if starts(&["kirk run", "kirk check", "kirk compile", "cargo ", "git ", "sudo ", "curl "]) {
-        "a command for the shell"
+        Foreign::Command
     } else if starts(&["<<<<<<<", "=======", ">>>>>>>", "|||||||"]) {
-        "the mark of a merge that has not been settled"
+        Foreign::MergeMark
     } else if starts(&["--- ", "+++ ", "@@ ", "diff "]) {
-        "part of a patch"
+        Foreign::Patch
     } else if starts(&["<?xml", "<graphml"]) {
-        "XML"
+        Foreign::Xml
     } else if starts(&["<!DOCTYPE", "<!doctype", "<html"]) {
-        "HTML"
+        Foreign::Html
     } else if line.starts_with('<') {
-        "XML or HTML"
+        Foreign::XmlOrHtml
     } else if line.starts_with('{') || (line.starts_with('[') && !line.starts_with("[(")) {
-        "JSON"
+        Foreign::Json
     } else if starts(&["(define (domain", "(define (problem"]) {
-        "PDDL"
+        Foreign::Pddl
     } else if starts(&["def ", "import ", "from ", "class "]) && (line.ends_with(':') || !line.contains('('))
         || starts(&["for ", "while ", "if ", "with ", "async def "]) && line.ends_with(':')
         || line.starts_with("print(")
     {
-        "Python"
+        Foreign::Python
     } else if starts(&["let ", "const ", "var ", "function ", "export "]) {
-        "JavaScript or another language with `let` and `=`"
+        Foreign::JavaScript
     } else if starts(&["fn ", "use ", "pub ", "impl ", "mod "]) {
-        "Rust"
+        Foreign::Rust
     } else if starts(&["#include", "#define", "int ", "void "]) {
-        "C or C++"
+        Foreign::C
     } else if starts(&["package ", "public ", "private "]) {
-        "Java or Go"
+        Foreign::JavaOrGo
     } else if line == "---" || (first.ends_with(':') && first.len() > 1 && !first.starts_with(':')) {
-        "YAML or a list of settings"
+        Foreign::Yaml
     } else if starts(&["# ", "## ", "```"]) {
-        "Markdown, or a comment of another language"
+        Foreign::Markdown
     } else if line.starts_with("//") || line.starts_with("/*") {
-        "a comment of another language"
+        Foreign::Comment
     } else if line.split_whitespace().nth(1) == Some("=") {
-        "an assignment of another language"
+        Foreign::Assignment
     } else {
         return None;
     })
 }
 
-/// The length of something in the text, how many bytes of it open and close it, what to write instead of those, and what to
-/// say about it.
+/// What it is, its length, and how many bytes of it open and close it.
 pub(super) struct Found {
+    pub(super) is: ForeignToken,
     pub(super) length: usize,
     pub(super) open: usize,
     pub(super) close: usize,
-    pub(super) instead: [&'static str; 2],
-    pub(super) problem: fn(Span) -> Diagnostic,
 }
 
 /// A comment or a string as other languages and word processors write them.
@@ -107,24 +97,18 @@ pub(super) fn foreign_token(text: &str) -> Option<Found> {
     /// How far the end of a comment is looked for.
     const NEAR: usize = 1_000;
     let line = || text.lines().next().unwrap_or("").len();
-    let problem = |span| {
-        Diagnostic::error(Code::Unreadable, span, "this is a comment of another language")
-            .primary("not RMPL")
-            .help("A comment begins with `;` and goes to the end of the line.")
-    };
     if text.starts_with("/*") {
         let end = text.bytes().take(NEAR).zip(text.bytes().skip(1)).position(|pair| pair == (b'*', b'/'));
-        let (length, close, instead) = match end {
-            Some(at) => (at + 2, 2, ["#|", "|#"]),
-            None => (line(), 0, [";", ""]),
-        };
-        return Some(Found { length, open: 2, close, instead, problem });
+        return Some(match end {
+            Some(at) => Found { is: ForeignToken::BlockComment, length: at + 2, open: 2, close: 2 },
+            None => Found { is: ForeignToken::LineComment, length: line(), open: 2, close: 0 },
+        });
     }
     let hash =
         text.strip_prefix('#').is_some_and(|rest| rest.is_empty() || rest.starts_with([' ', '\t', '#']));
     if text.starts_with("//") || hash {
         let open = if hash { 1 } else { 2 };
-        return Some(Found { length: line(), open, close: 0, instead: [";", ""], problem });
+        return Some(Found { is: ForeignToken::LineComment, length: line(), open, close: 0 });
     }
     let first = text.chars().next()?;
     let closing = match first {
@@ -135,41 +119,18 @@ pub(super) fn foreign_token(text: &str) -> Option<Found> {
     };
     let open = first.len_utf8();
     let end = text[open..].char_indices().take(NEAR).find(|(_, c)| closing.contains(c) || *c == '\n');
-    match end.filter(|(_, c)| *c != '\n') {
-        Some((at, c)) => {
-            let (length, close) = (open + at + c.len_utf8(), c.len_utf8());
-            let problem = |span| {
-                Diagnostic::error(Code::Unreadable, span, "these are not the quotation marks of a program")
-                    .primary("not RMPL")
-                    .help("A string stands in straight quotation marks: `\"text\"`.")
-            };
-            Some(Found { length, open, close, instead: ["\"", "\""], problem })
-        }
+    let (is, length, close) = match end.filter(|(_, c)| *c != '\n') {
+        Some((at, c)) => (ForeignToken::String, open + at + c.len_utf8(), c.len_utf8()),
         // One that closes nothing, like the one that a word processor makes of a quote.
-        None if first == '‘' => {
-            let problem = |span| {
-                Diagnostic::error(Code::Unreadable, span, "the character `‘` (U+2018) has no meaning here")
-                    .primary("a curly quotation mark")
-                    .help("A symbol that stands for itself is quoted with a straight one: `'name`; the name of a program is not quoted.")
-            };
-            Some(Found { length: open, open, close: 0, instead: ["'", ""], problem })
-        }
-        None => {
-            let problem = |span| {
-                Diagnostic::error(Code::Unreadable, span, "this quotation mark is not one of a program")
-                    .primary("not RMPL, and never closed")
-                    .help("A string stands in straight quotation marks: `\"text\"`.")
-            };
-            Some(Found { length: line(), open, close: 0, instead: ["", ""], problem })
-        }
-    }
+        None if first == '‘' => (ForeignToken::Quote, open, 0),
+        None => (ForeignToken::UnclosedString, line(), 0),
+    };
+    Some(Found { is, length, open, close })
 }
 
-fn not_text(source: u32, text: &str, at: usize) -> Diagnostic {
+fn not_text(source: u32, text: &str, at: usize) -> Problem<'static> {
     let length = text[at..].chars().next().map_or(0, char::len_utf8);
-    Diagnostic::error(Code::NotText, Span::new(source, at, at + length), "this is not text")
-        .primary("no text contains this")
-        .help("kirk reads RMPL programs as UTF-8 text; this looks like a binary file.")
+    Problem::NotText { at: Span::new(source, at, at + length) }
 }
 
 /// The first line that is neither blank nor a comment, and where it begins.

@@ -77,7 +77,7 @@ fn journal(events: u32) -> Vec<String> {
             if let Output::Fixed { event, .. } = output
                 && merged.link_of(event).is_none()
             {
-                let at = executive.dispatcher().known(event).fixed.unwrap().0;
+                let at = executive.dispatcher().known(event).fixed.unwrap().time;
                 for deed in nature.begin(event, at).unwrap() {
                     news.extend(deed.news.map(|time| Reverse((time, deed.event))));
                 }

@@ -69,10 +69,10 @@ fn name_beside<'a>(network: &'a Network, event: EventId, other: &str) -> &'a str
 /// At the time of another event: for one of Nature's that is when its news is acted on, or the lack of it.
 fn at(dispatcher: &Dispatcher, event: EventId, name: &str) -> String {
     let label = label(dispatcher.network(), event);
-    match dispatcher.known(event).fixed {
-        Some((_, How::Observed)) => format!("the news of {label}"),
-        Some((_, How::Buffered)) => format!("the news of {label}, held until then"),
-        Some((_, How::Imagined)) => format!("no news of {label} by then"),
+    match dispatcher.known(event).fixed.map(|fixed| fixed.how) {
+        Some(How::Observed) => format!("the news of {label}"),
+        Some(How::Buffered) => format!("the news of {label}, held until then"),
+        Some(How::Imagined) => format!("no news of {label} by then"),
         _ => format!("with {name}"),
     }
 }

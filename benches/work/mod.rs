@@ -14,7 +14,7 @@ use kirk_network::generate::{
 use kirk_network::merge::merge;
 use kirk_network::precedence::Precedence;
 use kirk_network::reduce::{Progress, reduce, reduce_rest};
-use kirk_network::{Dispatchable, Network, Time, dispatchable, json};
+use kirk_network::{Dispatchable, Interval, Network, Time, dispatchable, json};
 use kirk_runtime::{Execution, Plan, Simulation, Strategy, Temper, simulate};
 
 /// The public networks of `tests/networks` whose names start so: those without a number are groups of many.
@@ -122,20 +122,16 @@ pub fn execute(plan: &Plan) -> Execution {
 /// The moment at which half the events of an execution have happened.
 pub fn halfway(plan: &Plan) -> Progress {
     let network = plan.network();
-    let mut known: Vec<Option<(Time, Time)>> = vec![None; network.events().len()];
+    let mut known: Vec<Option<Interval>> = vec![None; network.events().len()];
     let mut truths: Vec<(Time, usize)> = execute(plan)
         .rows
         .iter()
-        .filter_map(|row| {
-            let truth = row.truth.or(row.time)?;
-            let time = Time::from_micros(truth.as_micros());
-            Some((time, network.find(&row.event)?.index()))
-        })
+        .filter_map(|row| Some((row.truth.or(row.time)?, network.find(&row.event)?.index())))
         .collect();
     truths.sort();
     let now = truths[truths.len() / 2].0;
     for &(time, event) in truths.iter().filter(|(time, _)| *time <= now) {
-        known[event] = Some((time, time));
+        known[event] = Some(Interval::at(time));
     }
     Progress { now, known }
 }

@@ -1,6 +1,6 @@
 //! The mission at one moment, as a person wants to see it: what was done, what comes next, what may be heard now.
 
-use kirk_network::{Duration, Time};
+use kirk_network::Time;
 use kirk_runtime::{Executive, Failure, How, Outcome, Pending, Row};
 
 /// The mission at one moment. It costs one pass over all events, so it is made only for those who ask.
@@ -95,12 +95,11 @@ fn possible(executive: &Executive) -> Vec<Possible> {
         .filter(|link| dispatcher.known(link.to).observed.is_none())
         .filter(|link| dispatcher.known(link.from).fixed.is_some())
         .filter_map(|link| {
-            let (low, high) = happened[link.to.index()]?;
-            let after = |at: i64, delay: Duration| Time::from_micros(at.saturating_add(delay.as_micros()));
+            let happened = happened[link.to.index()]?;
             Some(Possible {
                 event: network.label(link.to).to_string(),
-                from: after(low, link.delay.min),
-                until: link.delay.max.finite().map(|max| after(high, max)),
+                from: happened.earliest.saturating_add(link.delay.min),
+                until: link.delay.max.finite().map(|max| happened.latest.saturating_add(max)),
             })
         })
         .collect();
@@ -110,7 +109,7 @@ fn possible(executive: &Executive) -> Vec<Possible> {
 
 #[cfg(test)]
 mod tests {
-    use kirk_network::json;
+    use kirk_network::{Duration, json};
     use kirk_runtime::{Input, Patience, Plan, Scope, Settings, Setup, handovers};
 
     use super::*;

@@ -101,4 +101,4 @@ pub use dispatchable::{Dispatchable, dispatchable};
 pub use model::{ContingentLink, Delay, Event, EventId, ModelError, Name, Network, Requirement};
 pub use nearest::nearest;
 pub use source_map::SourceMap;
-pub use time::{Bound, Duration, ParseDurationError, Time};
+pub use time::{Bound, Duration, Interval, ParseDurationError, Time};

@@ -16,7 +16,7 @@
 
 use crate::model::{ContingentLink, Delay, Event, EventId, Name, Network, Requirement};
 use crate::stnu::{Edge, Link, Stnu, TooLarge, add};
-use crate::time::{Bound, Duration, Time};
+use crate::time::{Bound, Duration, Interval, Time};
 use crate::trees::{Trees, link_to};
 
 /// A plain STNU that is dynamically controllable iff the network it is from is variable-delay controllable (with the
@@ -88,7 +88,7 @@ pub struct Progress {
     /// Nothing more can happen before this.
     pub now: Time,
     /// For every event the interval in which it happened, if anything is known: a point for what we executed.
-    pub known: Vec<Option<(Time, Time)>>,
+    pub known: Vec<Option<Interval>>,
 }
 
 /// Reduces a merged network.
@@ -235,7 +235,7 @@ impl<'a> Reducer<'a> {
 
     /// The interval in which an event happened, if anything is known of it.
     fn known(&self, event: EventId) -> Option<(i64, i64)> {
-        let (earliest, latest) = self.progress?.known[event.index()]?;
+        let Interval { earliest, latest } = self.progress?.known[event.index()]?;
         Some((earliest.as_micros(), latest.as_micros()))
     }
 

@@ -6,11 +6,11 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use kirk_network::Dispatchable;
 use kirk_network::controllability::Wait;
 use kirk_network::stnu::{Edge, NONE, Rows};
+use kirk_network::{Dispatchable, Duration, Time};
 
-/// The state of an execution of one dispatchable network; all times in microseconds after the origin.
+/// The state of an execution of one dispatchable network. The weights of its edges are microseconds.
 #[derive(Clone, Debug)]
 pub(crate) struct Agenda {
     edges: Vec<Edge>,
@@ -28,27 +28,27 @@ pub(crate) struct Agenda {
     waits_of: Rows,
     nodes: Vec<NodeState>,
     /// Executable nodes that nothing holds back but time: (due less lead, node). Entries go stale and are then skipped.
-    ready: BinaryHeap<Reverse<(i64, u32)>>,
+    ready: BinaryHeap<Reverse<(Time, u32)>>,
 }
 
 #[derive(Clone, Debug)]
 struct NodeState {
-    executed: Option<i64>,
+    executed: Option<Time>,
     /// It is in somebody's hands: not to be offered again.
     taken: bool,
     /// How long before it is due it is offered.
-    lead: i64,
-    lower: i64,
+    lead: Duration,
+    lower: Time,
     /// What the node came to wait for until then.
     hold: Hold,
-    upper: i64,
+    upper: Time,
     /// How many nodes must be executed before this one.
     held_by: u32,
 }
 
 impl NodeState {
     /// Of what holds until the same time, what came last counts.
-    fn wait_until(&mut self, time: i64, hold: Hold) {
+    fn wait_until(&mut self, time: Time, hold: Hold) {
         if time >= self.lower {
             (self.lower, self.hold) = (time, hold);
         }
@@ -61,33 +61,34 @@ pub(crate) enum Hold {
     /// For nothing but time 0.
     Nothing,
     /// Until so long after another node.
-    After { node: u32, distance: i64 },
+    After { node: u32, distance: Duration },
     /// For another node to be done, at whatever distance.
     Order { node: u32 },
     /// Until so long after the activation of a link, as its end has not come.
-    Wait { link: u32, distance: i64 },
+    Wait { link: u32, distance: Duration },
 }
 
 #[derive(Clone, Debug)]
 struct ActiveWait {
     waiter: u32,
     link: u32,
-    weight: i64,
+    /// How long to wait after that.
+    distance: Duration,
     /// Until when, once the activation is executed; `None` before, and again when the wait has ended.
-    until: Option<i64>,
+    until: Option<Time>,
 }
 
 impl Agenda {
     /// Starts with the origin executed at time 0. Every node has a lead, by which it is offered before it is due.
-    pub(crate) fn new(net: &Dispatchable, lead: impl Fn(u32) -> i64) -> Agenda {
+    pub(crate) fn new(net: &Dispatchable, lead: impl Fn(u32) -> Duration) -> Agenda {
         let count = net.nodes as usize;
         let node = |node| NodeState {
             executed: None,
             taken: false,
             lead: lead(node),
-            lower: 0,
+            lower: Time::ZERO,
             hold: Hold::Nothing,
-            upper: i64::MAX,
+            upper: Time::MAX,
             held_by: 0,
         };
         let mut nodes: Vec<NodeState> = (0..net.nodes).map(node).collect();
@@ -124,7 +125,10 @@ impl Agenda {
             waits: net
                 .waits
                 .iter()
-                .map(|&Wait { waiter, link, weight }| ActiveWait { waiter, link, weight, until: None })
+                .map(|&Wait { waiter, link, weight }| {
+                    let distance = -Duration::from_micros(weight);
+                    ActiveWait { waiter, link, distance, until: None }
+                })
                 .collect(),
             ending,
             nodes,
@@ -133,22 +137,22 @@ impl Agenda {
         for node in 1..net.nodes {
             agenda.offer(node);
         }
-        agenda.execute(0, 0);
+        agenda.execute(0, Time::ZERO);
         agenda
     }
 
     /// When a node was executed.
-    pub(crate) fn executed(&self, node: u32) -> Option<i64> {
+    pub(crate) fn executed(&self, node: u32) -> Option<Time> {
         self.nodes[node as usize].executed
     }
 
     /// The latest time at which a node may be executed, as far as its neighbours say.
-    pub(crate) fn upper(&self, node: u32) -> i64 {
+    pub(crate) fn upper(&self, node: u32) -> Time {
         self.nodes[node as usize].upper
     }
 
     /// The executable node to take in hand next and when that is: the earliest there is.
-    pub(crate) fn next(&mut self) -> Option<(i64, u32)> {
+    pub(crate) fn next(&mut self) -> Option<(Time, u32)> {
         while let Some(&Reverse((time, node))) = self.ready.peek() {
             if self.action(node) == Some(time) {
                 return Some((time, node));
@@ -159,8 +163,8 @@ impl Agenda {
     }
 
     /// When a node that nothing holds back is due.
-    pub(crate) fn due(&self, node: u32) -> i64 {
-        self.earliest(node).unwrap_or(i64::MAX)
+    pub(crate) fn due(&self, node: u32) -> Time {
+        self.earliest(node).unwrap_or(Time::MAX)
     }
 
     /// What the time at which a node is due comes of.
@@ -168,7 +172,7 @@ impl Agenda {
         let NodeState { lower, hold, .. } = self.nodes[node as usize];
         let waits = self.waits_of.of(node).iter().map(|&wait| &self.waits[wait as usize]);
         let longest = waits.filter(|wait| wait.until > Some(lower)).max_by_key(|wait| wait.until);
-        longest.map_or(hold, |wait| Hold::Wait { link: wait.link, distance: wait.weight.saturating_neg() })
+        longest.map_or(hold, |wait| Hold::Wait { link: wait.link, distance: wait.distance })
     }
 
     /// The link that ends at a node, if one does.
@@ -182,7 +186,7 @@ impl Agenda {
     }
 
     /// Executes a node, or says that a contingent node has happened. Returns the links this starts.
-    pub(crate) fn execute(&mut self, node: u32, time: i64) -> Vec<u32> {
+    pub(crate) fn execute(&mut self, node: u32, time: Time) -> Vec<u32> {
         // Between calls `lower` and `upper` are the tightest that executed neighbours say, and `held_by` counts what must
         // come first and has not. Neighbours are enough, as the network is dispatchable (Muscettola 1998): a bound from
         // afar has come to a neighbour by then. The edges passed over say nothing: an incoming one of weight >= 0 bounds
@@ -192,19 +196,20 @@ impl Agenda {
             let Edge { to, weight, .. } = self.edges[self.outgoing.of(node)[at] as usize];
             if weight >= 0 {
                 let upper = &mut self.nodes[to as usize].upper;
-                *upper = (*upper).min(time.saturating_add(weight));
+                *upper = (*upper).min(time.saturating_add(Duration::from_micros(weight)));
             }
         }
         for at in 0..self.incoming.of(node).len() {
             let edge = self.incoming.of(node)[at];
             let Edge { from, weight, .. } = self.edges[edge as usize];
             if self.holds[edge as usize] {
+                let distance = -Duration::from_micros(weight);
                 let hold = match (edge as usize) < self.ordinary {
-                    true => Hold::After { node, distance: weight.saturating_neg() },
+                    true => Hold::After { node, distance },
                     false => Hold::Order { node },
                 };
                 let state = &mut self.nodes[from as usize];
-                state.wait_until(time.saturating_sub(weight), hold);
+                state.wait_until(time.saturating_add(distance), hold);
                 state.held_by -= 1;
                 self.offer(from);
             }
@@ -213,7 +218,7 @@ impl Agenda {
         for &link in &started {
             for at in 0..self.waits_for.of(link).len() {
                 let wait = &mut self.waits[self.waits_for.of(link)[at] as usize];
-                wait.until = Some(time.saturating_sub(wait.weight));
+                wait.until = Some(time.saturating_add(wait.distance));
                 let waiter = wait.waiter;
                 self.nodes[waiter as usize].held_by -= 1;
                 self.offer(waiter);
@@ -226,7 +231,7 @@ impl Agenda {
                 wait.until = None;
                 let waiter = wait.waiter;
                 // It may go ahead now, not earlier.
-                self.nodes[waiter as usize].wait_until(time, Hold::After { node, distance: 0 });
+                self.nodes[waiter as usize].wait_until(time, Hold::After { node, distance: Duration::ZERO });
                 self.offer(waiter);
             }
         }
@@ -234,17 +239,17 @@ impl Agenda {
     }
 
     /// The earliest time for a node nothing holds back, else `None`.
-    fn earliest(&self, node: u32) -> Option<i64> {
+    fn earliest(&self, node: u32) -> Option<Time> {
         let state = &self.nodes[node as usize];
         if state.held_by > 0 || state.executed.is_some() {
             return None;
         }
         let waits = self.waits_of.of(node).iter().filter_map(|&wait| self.waits[wait as usize].until);
-        Some(waits.fold(state.lower, i64::max))
+        Some(waits.fold(state.lower, Time::max))
     }
 
     /// When to take a node in hand.
-    fn action(&self, node: u32) -> Option<i64> {
+    fn action(&self, node: u32) -> Option<Time> {
         let state = &self.nodes[node as usize];
         if state.taken { None } else { self.earliest(node).map(|time| time.saturating_sub(state.lead)) }
     }

@@ -6,13 +6,11 @@
 
 use std::collections::BTreeMap;
 
-use kirk_network::Time;
+use kirk_network::{Interval, Time};
 use serde::{Deserialize, Serialize};
 
-use crate::activity::Handover;
-use crate::execution::How;
 use crate::knowledge::Known;
-use crate::order::{Order, State};
+use crate::order::Course;
 
 /// What has become known since the last checkpoint; several of them, one followed by the other, are
 /// all that is known. Events go by name, times are microseconds after the origin.
@@ -22,9 +20,9 @@ pub struct Checkpoint {
     /// How often anything has happened to the dispatcher, and to the executive besides.
     pub(crate) versions: (u64, u64),
     /// What is known of events.
-    pub(crate) events: BTreeMap<String, KnownEvent>,
+    pub(crate) events: BTreeMap<String, Known>,
     /// What is or was in the hands of the driver, by number.
-    pub(crate) orders: BTreeMap<u32, KnownOrder>,
+    pub(crate) orders: BTreeMap<u32, Course>,
     /// News that waits for what is in flight.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) held: Vec<(i64, String)>,
@@ -37,48 +35,6 @@ pub struct Checkpoint {
     pub(crate) broken: Vec<(i64, String, String)>,
 }
 
-/// What is known of an event.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct KnownEvent {
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    fixed: Option<(i64, How, u32)>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    observed: Option<i64>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    evidence: Option<(i64, i64)>,
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    settled: bool,
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    overruled: bool,
-}
-
-/// What is known of an order.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct KnownOrder {
-    /// The event, under the name under which it is handed over.
-    pub(crate) name: String,
-    due: i64,
-    closes: i64,
-    first_sent: i64,
-    started: i64,
-    attempts: u32,
-    state: KnownState,
-    #[serde(default, skip_serializing_if = "String::is_empty")]
-    reason: String,
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    doubtful: bool,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum KnownState {
-    Sent,
-    Waiting(i64),
-    Done,
-}
-
 impl Checkpoint {
     /// All that is known once this and then that has become known.
     pub(crate) fn followed_by(&mut self, later: &Checkpoint) {
@@ -89,75 +45,86 @@ impl Checkpoint {
     }
 }
 
-impl From<&Known> for KnownEvent {
-    fn from(known: &Known) -> KnownEvent {
-        let Known { fixed, sequence, observed, settled, evidence, overruled } = *known;
-        KnownEvent {
-            fixed: fixed.map(|(time, how)| (time.as_micros(), how, sequence)),
-            observed: observed.map(Time::as_micros),
-            evidence,
-            settled,
-            overruled,
-        }
+/// Times as checkpoints have them, for `#[serde(with = "micros")]`.
+pub(crate) mod micros {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    use super::InMicros;
+
+    pub(crate) fn serialize<T: InMicros, S: Serializer>(time: &T, serializer: S) -> Result<S::Ok, S::Error> {
+        time.to_micros().serialize(serializer)
+    }
+
+    pub(crate) fn deserialize<'de, T: InMicros, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<T, D::Error> {
+        T::Micros::deserialize(deserializer).map(T::of_micros)
     }
 }
 
-impl From<&KnownEvent> for Known {
-    fn from(event: &KnownEvent) -> Known {
-        let KnownEvent { fixed, observed, evidence, settled, overruled } = *event;
-        Known {
-            fixed: fixed.map(|(time, how, _)| (Time::from_micros(time), how)),
-            sequence: fixed.map_or(0, |(.., sequence)| sequence),
-            observed: observed.map(Time::from_micros),
-            settled,
-            evidence,
-            overruled,
-        }
+/// What is written in whole microseconds.
+pub(crate) trait InMicros: Copy {
+    type Micros: Serialize + for<'de> Deserialize<'de>;
+
+    fn to_micros(self) -> Self::Micros;
+    fn of_micros(micros: Self::Micros) -> Self;
+}
+
+impl InMicros for Time {
+    type Micros = i64;
+
+    fn to_micros(self) -> i64 {
+        self.as_micros()
+    }
+
+    fn of_micros(micros: i64) -> Time {
+        Time::from_micros(micros)
     }
 }
 
-impl From<&Order> for KnownOrder {
-    fn from(order: &Order) -> KnownOrder {
-        KnownOrder {
-            name: order.name.clone(),
-            due: order.due.as_micros(),
-            closes: order.closes.as_micros(),
-            first_sent: order.first_sent.as_micros(),
-            started: order.started.as_micros(),
-            attempts: order.attempts,
-            state: match order.state {
-                State::Sent => KnownState::Sent,
-                State::Waiting(again) => KnownState::Waiting(again.as_micros()),
-                State::Done => KnownState::Done,
-            },
-            reason: order.reason.clone(),
-            doubtful: order.doubtful,
-        }
+impl InMicros for Interval {
+    type Micros = (i64, i64);
+
+    fn to_micros(self) -> (i64, i64) {
+        (self.earliest.to_micros(), self.latest.to_micros())
+    }
+
+    fn of_micros((earliest, latest): (i64, i64)) -> Interval {
+        Interval::new(Time::of_micros(earliest), Time::of_micros(latest))
     }
 }
 
-impl KnownOrder {
-    /// The order again: who begins the ids, and what is handed over.
-    pub(crate) fn order(&self, run: &str, handover: &Handover) -> Order {
-        let Handover { event, name, companion } = handover.clone();
-        Order {
-            id: format!("{run}/{name}"),
-            event,
-            name,
-            companion,
-            due: Time::from_micros(self.due),
-            closes: Time::from_micros(self.closes),
-            first_sent: Time::from_micros(self.first_sent),
-            started: Time::from_micros(self.started),
-            attempts: self.attempts,
-            state: match self.state {
-                KnownState::Sent => State::Sent,
-                KnownState::Waiting(again) => State::Waiting(Time::from_micros(again)),
-                KnownState::Done => State::Done,
-            },
-            reason: self.reason.clone(),
-            doubtful: self.doubtful,
-            kept: self.state == KnownState::Done,
+impl<T: InMicros> InMicros for Option<T> {
+    type Micros = Option<T::Micros>;
+
+    fn to_micros(self) -> Option<T::Micros> {
+        self.map(T::to_micros)
+    }
+
+    fn of_micros(micros: Option<T::Micros>) -> Option<T> {
+        micros.map(T::of_micros)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Journals are read for as long as robots keep them.
+    #[test]
+    fn a_checkpoint_is_written_as_it_always_was() {
+        let events = r#""a":{"fixed":[0,"dispatched",0]},"b":{"fixed":[7000000,"imagined",1],"evidence":[4000000,9223372036854775807],"settled":true},"c":{"observed":9500000,"evidence":[-9223372036854775808,9000000],"settled":true,"overruled":true},"d":{}"#;
+        let orders = r#""0":{"name":"a:start","due":0,"closes":100000,"first_sent":0,"started":1,"attempts":1,"state":"done"},"7":{"name":"b:start","due":1500000,"closes":9223372036854775807,"first_sent":1500000,"started":1600000,"attempts":2,"state":{"waiting":3000000},"reason":"no power","doubtful":true},"8":{"name":"c:start","due":1,"closes":2,"first_sent":3,"started":4,"attempts":1,"state":"sent"}"#;
+        let lists =
+            r#""held":[[1500000,"b"]],"awaited":[[2000000,"c"]],"broken":[[3000000,"d","it is late"]]"#;
+        for text in [
+            format!(r#"{{"versions":[12,3],"events":{{{events}}},"orders":{{{orders}}},{lists}}}"#),
+            r#"{"versions":[0,0],"events":{},"orders":{}}"#.to_string(),
+        ] {
+            let checkpoint: Checkpoint = serde_json::from_str(&text).unwrap();
+            assert_eq!(serde_json::to_string(&checkpoint).unwrap(), text);
         }
+        let strange = r#"{"versions":[0,0],"events":{"a":{"tea":1}},"orders":{}}"#;
+        assert!(serde_json::from_str::<Checkpoint>(strange).is_err());
     }
 }

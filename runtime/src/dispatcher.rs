@@ -31,9 +31,9 @@ use std::sync::Arc;
 
 use flight::InFlight;
 use kirk_network::precedence::Precedence;
-use kirk_network::reduce::Reduction;
+use kirk_network::reduce::{Place, Reduction};
 use kirk_network::stnu::{Link, Rows};
-use kirk_network::{Dispatchable, Duration, EventId, Network, Time};
+use kirk_network::{Dispatchable, Duration, EventId, Interval, Network, Time};
 pub use replan::Adoption;
 
 use crate::agenda::Agenda;
@@ -71,8 +71,8 @@ pub struct Settings {
 
 impl Settings {
     /// How long before it is due an event is dispatched.
-    fn lead_of(&self, carried_out: bool) -> i64 {
-        if carried_out && self.confirmed { self.lead.as_micros() } else { 0 }
+    fn lead_of(&self, carried_out: bool) -> Duration {
+        if carried_out && self.confirmed { self.lead } else { Duration::ZERO }
     }
 
     /// Nothing is ever late, and every dispatch is its own execution.
@@ -131,15 +131,15 @@ pub struct Dispatcher {
     carried_out: Vec<bool>,
     reduction: Reduction,
     agenda: Agenda,
-    /// The links that have started and whose contingent node has not happened: (window start, window end, link).
-    active: Vec<(i64, i64, u32)>,
+    /// The links that have started and whose contingent node has not happened: (window, link).
+    active: Vec<(Interval, u32)>,
     knowledge: Knowledge,
     /// Events without a node of their own that may not have happened yet: (when they surely have, event).
-    unplaced: Vec<(i64, EventId)>,
+    unplaced: Vec<(Time, EventId)>,
     /// For every node of the plan the events placed there.
     placed_at: Rows,
     measured: Measured,
-    now: i64,
+    now: Time,
     in_flight: Vec<InFlight>,
     dispatches: VecDeque<Dispatch>,
     fixed: VecDeque<EventId>,
@@ -164,7 +164,7 @@ impl Dispatcher {
         let mut dispatcher = Dispatcher::following(plan, settings, knowledge);
         let origin = dispatcher.network().origin();
         dispatcher.dispatches.push_back(Dispatch { event: origin, time: Time::ZERO });
-        dispatcher.fix(origin, 0, How::Dispatched, Cause::Start);
+        dispatcher.fix(origin, Time::ZERO, How::Dispatched, Cause::Start);
         dispatcher.activate_from_origin();
         dispatcher
     }
@@ -187,7 +187,7 @@ impl Dispatcher {
             unplaced: Vec::new(),
             placed_at: Rows::new(0, std::iter::empty()),
             measured: Measured::new(&network),
-            now: 0,
+            now: Time::ZERO,
             in_flight: Vec::new(),
             dispatches: VecDeque::new(),
             fixed: VecDeque::new(),
@@ -214,7 +214,7 @@ impl Dispatcher {
 
     /// The latest time that anything was done.
     pub(crate) fn now(&self) -> Time {
-        Time::from_micros(self.now)
+        self.now
     }
 
     /// What is known of an event.
@@ -230,7 +230,6 @@ impl Dispatcher {
     /// Takes news of an event that arrived at a time, usually now. News that is outside of what the model allows by no more
     /// than the lead and the lateness of dispatches counts as if it had come when it may.
     pub fn handle_observation(&mut self, arrived: Time, event: EventId) -> Reception {
-        let arrived = arrived.as_micros();
         self.now = self.now.max(arrived);
         let Some(link) = self.network().link_of(event) else { return Reception::NotContingent };
         if self.known(event).observed.is_some() {
@@ -240,29 +239,26 @@ impl Dispatcher {
         let Some(before) = self.happened(event) else {
             return Reception::Impossible { earliest: None, latest: None };
         };
-        let earliest = before.0.saturating_add(link.delay.min.as_micros());
-        let latest = link.delay.max.finite().map(|max| before.1.saturating_add(max.as_micros()));
-        let nearest = arrived.max(earliest).min(latest.unwrap_or(i64::MAX));
-        let slack = self.settings.lead.as_micros().saturating_add(self.settings.lateness.as_micros());
-        let heard = if nearest.abs_diff(arrived) <= slack.unsigned_abs() { nearest } else { arrived };
+        let earliest = before.earliest.saturating_add(link.delay.min);
+        let latest = link.delay.max.finite().map(|max| before.latest.saturating_add(max));
+        let nearest = arrived.max(earliest).min(latest.unwrap_or(Time::MAX));
+        let slack = self.settings.lead.saturating_add(self.settings.lateness);
+        let heard = if nearest.saturating_since(arrived).abs() <= slack { nearest } else { arrived };
         let evidence = heard_now(&link, heard);
-        if before.0.max(evidence.0) > before.1.min(evidence.1) || before.0 > heard {
+        if before.and(evidence).is_empty() || before.earliest > heard {
             // Who was told when it was to come, and that it has not, is told the same again.
-            let by_model = self.knowledge.news_by(&self.network, event).filter(|by| by.as_micros() < arrived);
-            let latest = by_model.or(latest.map(Time::from_micros));
-            return Reception::Impossible { earliest: Some(Time::from_micros(earliest)), latest };
+            let by_model = self.knowledge.news_by(&self.network, event).filter(|&by| by < arrived);
+            return Reception::Impossible { earliest: Some(earliest), latest: by_model.or(latest) };
         }
         self.version += 1;
         self.knowledge.hear(event, heard);
         self.knowledge.add_evidence(event, evidence);
         let place = self.reduction.places[event.index()];
-        let window = self.active.iter().copied().find(|&(_, _, link)| {
+        let window = self.active.iter().copied().find(|&(_, link)| {
             self.reduction.stnu.links[link as usize].contingent == place.node && place.heard_by == Some(event)
         });
         match window {
-            Some((start, end, _)) if (start..=end).contains(&heard) => {
-                self.happen(place.node, heard, How::Observed)
-            }
+            Some((window, _)) if window.contains(heard) => self.happen(place.node, heard, How::Observed),
             _ if self.settings.strategy == Strategy::Optimistic && self.says_more(event) => self.stale = true,
             _ if place.heard_by != Some(event) => self.fix(event, heard, How::Observed, Cause::News),
             _ => {}
@@ -274,7 +270,6 @@ impl Dispatcher {
     /// which is wrong. It has to be planned anew with that, and until there is an answer nothing is done. An event whose
     /// activation has not happened is not taken. Nothing may be in flight.
     pub fn handle_impossible(&mut self, arrived: Time, event: EventId) {
-        let arrived = arrived.as_micros();
         self.now = self.now.max(arrived);
         let Some(link) = self.network.link_of(event).map(|link| self.network.contingents()[link]) else {
             return;
@@ -289,7 +284,7 @@ impl Dispatcher {
 
     /// Does everything that is due by now: releases buffered news, imagines missing news, dispatches events.
     pub fn handle_timeout(&mut self, now: Time) {
-        self.now = self.now.max(now.as_micros());
+        self.now = self.now.max(now);
         while self.missed.is_none() && !self.broken {
             let link = self.next_link().filter(|&(time, ..)| time <= self.now);
             let early = self.next_early().filter(|&(time, _)| time <= self.now);
@@ -321,8 +316,7 @@ impl Dispatcher {
     pub fn window_end(&self, event: EventId) -> Option<Time> {
         let node = self.reduction.places[event.index()].node;
         let link = self.reduction.stnu.links.iter().find(|link| link.contingent == node)?;
-        let start = self.agenda.executed(link.activation)?;
-        Some(Time::from_micros(start.saturating_add(link.upper)))
+        Some(window(link, self.agenda.executed(link.activation)?).latest)
     }
 
     /// True if no news of an event is waited for.
@@ -360,12 +354,7 @@ impl Dispatcher {
         let event = self.agenda.next().map(|(time, _)| time);
         let over = self.last_unheard().filter(|&time| time > self.now);
         let early = self.next_early().map(|(time, _)| time);
-        link.into_iter()
-            .chain(early)
-            .chain(event)
-            .chain(over)
-            .min()
-            .map(|time| Time::from_micros(time.max(self.now)))
+        link.into_iter().chain(early).chain(event).chain(over).min().map(|time| time.max(self.now))
     }
 
     /// What will be done next if nothing is heard: when, with which event, and how. `None` when nothing is left or all
@@ -379,12 +368,12 @@ impl Dispatcher {
             (self.agenda.due(node), self.reduction.event_of[node as usize], How::Dispatched)
         });
         let next = link.into_iter().chain(event).min_by_key(|&(time, ..)| time);
-        next.map(|(time, event, how)| (Time::from_micros(time.max(self.now)), event, how))
+        next.map(|(time, event, how)| (time.max(self.now), event, how))
     }
 
-    /// The interval (microseconds) in which an event happened or will happen, given all that is known; `None` while its
+    /// The interval in which an event happened or will happen, given all that is known; `None` while its
     /// activation has not been executed.
-    pub fn happened(&self, event: EventId) -> Option<(i64, i64)> {
+    pub fn happened(&self, event: EventId) -> Option<Interval> {
         self.knowledge.happened(self.network(), event)
     }
 
@@ -395,27 +384,27 @@ impl Dispatcher {
     }
 
     /// The same for all events.
-    pub fn all_happened(&self) -> Vec<Option<(i64, i64)>> {
+    pub fn all_happened(&self) -> Vec<Option<Interval>> {
         self.knowledge.all_happened(self.network())
     }
 
     /// The same for all events at the end of an execution, when silence also says something: an event that was never
     /// heard of cannot have happened so long ago that its news would have come by `end`.
-    pub fn happened_by(&self, end: Time) -> Vec<Option<(i64, i64)>> {
+    pub fn happened_by(&self, end: Time) -> Vec<Option<Interval>> {
         let network = self.network();
         // Silence about one event says something of the others in its chain, too.
         let mut knowledge = self.knowledge.clone();
         for link in network.contingents().iter().filter(|link| self.known(link.to).observed.is_none()) {
             if let Some(max) = link.delay.max.finite() {
-                let earliest = end.as_micros().saturating_sub(max.as_micros());
+                let earliest = end.saturating_sub(max);
                 // If it was to be heard long ago its news is lost, and silence says nothing.
-                if self.happened(link.to).is_some_and(|(_, high)| high >= earliest) {
-                    knowledge.add_evidence(link.to, (earliest, i64::MAX));
+                if self.happened(link.to).is_some_and(|within| within.latest >= earliest) {
+                    knowledge.add_evidence(link.to, Interval::new(earliest, Time::MAX));
                 }
             }
         }
         let (silent, all) = (knowledge.all_happened(network), self.all_happened());
-        let possible = |interval: &Option<(i64, i64)>| interval.is_some_and(|(low, high)| low <= high);
+        let possible = |interval: &Option<Interval>| interval.is_some_and(|interval| !interval.is_empty());
         silent
             .into_iter()
             .zip(all)
@@ -428,23 +417,23 @@ impl Dispatcher {
         self.placed_at =
             Rows::new(self.reduction.stnu.nodes, self.reduction.places.iter().map(|place| place.node));
         self.unplaced.clear();
-        self.note_unplaced(0, 0);
+        self.note_unplaced(0, Time::ZERO);
         for (index, link) in self.reduction.stnu.links.iter().enumerate() {
             if link.activation == 0 {
-                self.active.push((link.lower, link.upper, index as u32));
+                self.active.push((window(link, Time::ZERO), index as u32));
             }
         }
     }
 
     /// The next link to end without further news: (time, contingent node, how).
-    fn next_link(&self) -> Option<(i64, u32, How)> {
-        let ends = self.active.iter().map(|&(start, end, link)| {
+    fn next_link(&self) -> Option<(Time, u32, How)> {
+        let ends = self.active.iter().map(|&(Interval { earliest, latest }, link)| {
             let node = self.reduction.stnu.links[link as usize].contingent;
             let root = self.reduction.event_of[node as usize];
             let heard = self.reduction.places[root.index()]
                 .heard_by
                 .is_some_and(|event| self.known(event).observed.is_some());
-            if heard { (start.min(end), node, How::Buffered) } else { (end, node, How::Imagined) }
+            if heard { (earliest.min(latest), node, How::Buffered) } else { (latest, node, How::Imagined) }
         });
         ends.min_by_key(|&(time, node, _)| (time, node))
     }
@@ -456,42 +445,38 @@ impl Dispatcher {
     }
 
     /// A contingent node happens: the plan goes on as if its news had come now.
-    fn happen(&mut self, node: u32, time: i64, how: How) {
+    fn happen(&mut self, node: u32, time: Time, how: How) {
         let event = self.acted_on(node);
-        self.active.retain(|&(_, _, link)| self.reduction.stnu.links[link as usize].contingent != node);
+        self.active.retain(|&(_, link)| self.reduction.stnu.links[link as usize].contingent != node);
         let place = self.reduction.places[event.index()];
         if how == How::Imagined {
             // Had it happened earlier, its news would have come.
-            self.knowledge.add_evidence(
-                event,
-                (time.saturating_add(place.earliest), time.saturating_add(place.latest)),
-            );
+            self.knowledge.add_evidence(event, whereabouts(&place, time));
         }
         self.fix(event, time, how, self.cause_of_acting(node, event, time, how));
         self.start(node, time);
     }
 
     /// What happens to everything measured from a node once that is executed.
-    fn start(&mut self, node: u32, time: i64) {
+    fn start(&mut self, node: u32, time: Time) {
         for link in self.agenda.execute(node, time) {
-            let Link { lower, upper, .. } = self.reduction.stnu.links[link as usize];
-            self.active.push((time.saturating_add(lower), time.saturating_add(upper), link));
+            self.active.push((window(&self.reduction.stnu.links[link as usize], time), link));
         }
         self.note_unplaced(node, time);
     }
 
-    fn note_unplaced(&mut self, node: u32, time: i64) {
+    fn note_unplaced(&mut self, node: u32, time: Time) {
         for &event in self.placed_at.of(node) {
-            let over = time.saturating_add(self.reduction.places[event as usize].latest);
+            let over = whereabouts(&self.reduction.places[event as usize], time).latest;
             if over > time {
                 self.unplaced.push((over, EventId(event)));
             }
         }
     }
 
-    fn fix(&mut self, event: EventId, time: i64, how: How, cause: Cause) {
+    fn fix(&mut self, event: EventId, time: Time, how: How, cause: Cause) {
         // At the moment of its own news nothing is held back.
-        let heard_then = self.known(event).observed == Some(Time::from_micros(time));
+        let heard_then = self.known(event).observed == Some(time);
         let (how, cause) =
             if how == How::Buffered && heard_then { (How::Observed, Cause::News) } else { (how, cause) };
         if self.knowledge.fix(event, time, how) {
@@ -502,13 +487,25 @@ impl Dispatcher {
     }
 
     /// When the last contingent event that nothing waits for has surely happened.
-    fn last_unheard(&self) -> Option<i64> {
+    fn last_unheard(&self) -> Option<Time> {
         let unheard = |event: &EventId| self.known(*event).observed.is_none();
         self.unplaced.iter().filter(|(_, event)| unheard(event)).map(|&(over, _)| over).max()
     }
 }
 
 /// The agenda of a plan, with the lead of its events.
-fn agenda(reduction: &Reduction, net: &Dispatchable, lead: impl Fn(EventId) -> i64) -> Agenda {
+fn agenda(reduction: &Reduction, net: &Dispatchable, lead: impl Fn(EventId) -> Duration) -> Agenda {
     Agenda::new(net, |node| lead(reduction.event_of[node as usize]))
+}
+
+/// When the contingent node of a link may happen whose activation is executed at a time.
+fn window(link: &Link, activated: Time) -> Interval {
+    let [lower, upper] = [link.lower, link.upper].map(Duration::from_micros);
+    Interval::at(activated).later(lower, upper)
+}
+
+/// When an event happens whose node of the plan is executed at a time.
+fn whereabouts(place: &Place, executed: Time) -> Interval {
+    let [earliest, latest] = [place.earliest, place.latest].map(Duration::from_micros);
+    Interval::at(executed).later(earliest, latest)
 }

@@ -1,7 +1,6 @@
 //! The record of an execution: what was fixed when, and why, as `kirk-execution/1` says it.
 
-use kirk_network::Time;
-use kirk_network::time::Interval;
+use kirk_network::{Interval, Time};
 use serde::{Deserialize, Serialize};
 
 use crate::input::Reason;

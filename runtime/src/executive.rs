@@ -19,13 +19,12 @@ use crate::checkpoint::Checkpoint;
 use crate::dispatcher::{Adoption, Dispatch, Dispatcher, Settings};
 use crate::execution::{Execution, Failure, How, Outcome, Row};
 use crate::input::{Answer, Handled, Input, Reason, Why};
-use crate::order::{Order, Patience, State};
+use crate::knowledge::Fixed;
+use crate::order::{Order, Orders, Patience};
 use crate::plan::Plan;
 use crate::rebuild::{Rebuild, Rebuilt};
 use crate::record::{all_over, missed_window, record, row};
 use crate::replay::names;
-
-const MICROSECOND: Duration = Duration::from_micros(1);
 
 /// An executive in the middle of its mission.
 #[derive(Clone, Debug)]
@@ -43,7 +42,7 @@ pub struct Executive {
     handovers: Vec<Handover>,
     /// For each event, where its handovers begin and end.
     handovers_of: Vec<(u32, u32)>,
-    orders: Vec<Order>,
+    orders: Orders,
     /// Contingent events that start activities, which nobody has been told of.
     unannounced: Vec<EventId>,
     /// News of what began with an event that is in flight.
@@ -180,7 +179,7 @@ impl Executive {
             patience,
             handovers,
             handovers_of,
-            orders: Vec::new(),
+            orders: Orders::default(),
             unannounced,
             held: Vec::new(),
             awaited: Vec::new(),
@@ -313,26 +312,28 @@ impl Executive {
         if self.over {
             return None;
         }
-        let retry = self.orders.iter().filter_map(|order| order.state.wakes());
+        let retry = self.orders.open.iter().filter_map(|order| order.course.state.wakes());
         let surely = self.unannounced.iter().filter_map(|&event| surely(&self.dispatcher, event));
         // One microsecond more than is allowed, and it is lost.
-        let lost =
-            self.awaited.iter().filter_map(|(by, _)| by.checked_add(self.slack)?.checked_add(MICROSECOND));
+        let lost = self
+            .awaited
+            .iter()
+            .filter_map(|(by, _)| by.checked_add(self.slack)?.checked_add(Duration::SHORTEST));
         let soonest =
             retry.chain(surely).chain(lost).min().into_iter().chain(self.dispatcher.poll_timeout()).min();
         // When nothing else is to come.
-        soonest.or_else(|| self.overdue(self.dispatcher.now())?.checked_add(MICROSECOND))
+        soonest.or_else(|| self.overdue(self.dispatcher.now())?.checked_add(Duration::SHORTEST))
     }
 
     /// What the driver was told of and has not confirmed, in the order in which it was told first.
     pub fn pending(&self) -> Vec<Pending> {
-        let open = self.orders.iter().filter(|order| order.state != State::Done);
-        let pending = |order: &Order| Pending {
-            name: order.name.clone(),
-            latest: self.dispatcher.latest(order.event),
-            attempts: order.attempts,
-            again: order.state.wakes(),
-            reason: order.reason.clone(),
+        let open = self.orders.open.iter().filter(|order| !order.is_done());
+        let pending = |Order { event, course, .. }: &Order| Pending {
+            name: course.name.clone(),
+            latest: self.dispatcher.latest(*event),
+            attempts: course.attempts,
+            again: course.state.wakes(),
+            reason: course.reason.clone(),
         };
         open.map(pending).collect()
     }
@@ -352,8 +353,8 @@ impl Executive {
         }
         // The origin is time zero whatever the driver does, but an activity that was to start there may not have.
         let unconfirmed = |row: &Row| {
-            let open = |order: &Order| order.state != State::Done && order.name == row.event;
-            row.how == How::Dispatched && self.orders.iter().any(open)
+            let open = |order: &Order| !order.is_done() && order.course.name == row.event;
+            row.how == How::Dispatched && self.orders.open.iter().any(open)
         };
         execution.rows.retain(|row| !unconfirmed(row));
         execution.failure = self.failure.clone();
@@ -395,7 +396,7 @@ impl Executive {
                 _ => self.unannounced.push(event),
             }
         }
-        for at in 0..self.orders.len() {
+        for at in 0..self.orders.open.len() {
             if !self.over {
                 self.look_after(at, now);
             }
@@ -409,7 +410,7 @@ impl Executive {
             self.fail(missed.event, missed.time, failure.reason, failure.detail);
         } else if self.unannounced.is_empty()
             && self.held.is_empty()
-            && self.orders.iter().all(|order| order.state == State::Done)
+            && self.orders.open.is_empty()
             && self.dispatcher.is_over()
             && self.overdue(now).is_none()
         {
@@ -427,7 +428,7 @@ impl Executive {
             let told = || told.iter().find(|dispatch| dispatch.event == event).map(|dispatch| dispatch.time);
             let due = if self.dispatcher.is_carried_out(event) { told() } else { None };
             self.outputs.push_back(Output::Fixed { event, due });
-            if let Some((_, How::Imagined)) = self.dispatcher.known(event).fixed {
+            if let Some(Fixed { how: How::Imagined, .. }) = self.dispatcher.known(event).fixed {
                 self.awaited.extend(self.dispatcher.news_by(event).map(|by| (by, event)));
             }
         }
@@ -445,9 +446,9 @@ impl Executive {
 /// When a contingent event that starts an activity counts as happened: when it is taken, and if it is not waited for, when
 /// it surely has.
 fn surely(dispatcher: &Dispatcher, event: EventId) -> Option<Time> {
-    let high = || dispatcher.happened(event).map(|(_, high)| Time::from_micros(high));
+    let latest = || dispatcher.happened(event).map(|within| within.latest);
     match dispatcher.known(event).fixed {
-        Some((time, _)) => Some(time),
-        None => high().filter(|_| dispatcher.is_hidden(event)),
+        Some(fixed) => Some(fixed.time),
+        None => latest().filter(|_| dispatcher.is_hidden(event)),
     }
 }

@@ -3,31 +3,56 @@
 //! Contingent links form trees whose roots are executable. Once the root is executed, news of one event narrows where
 //! the others of its tree can be; one pass up and one pass down the tree find the exact intervals.
 
-use kirk_network::{Bound, ContingentLink, EventId, Network, Time};
+use kirk_network::{ContingentLink, EventId, Interval, Network, Time};
+use serde::{Deserialize, Serialize};
 
+use crate::checkpoint::micros;
 use crate::execution::How;
 
-/// What is known of one event.
-#[derive(Clone, Copy, Debug, Default)]
+/// What is known of one event. The names and the order of its fields are what checkpoints are written with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Known {
     /// When and how the executive fixed it.
-    pub fixed: Option<(Time, How)>,
-    /// Its place among the events fixed so far.
-    pub sequence: u32,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fixed: Option<Fixed>,
     /// When its news arrived.
+    #[serde(default, with = "micros", skip_serializing_if = "Option::is_none")]
     pub observed: Option<Time>,
-    /// It is known to have happened: heard, imagined, or implied by news of what follows it.
-    pub(crate) settled: bool,
-    /// An interval in which it happened, from its own news or from the lack of it.
+    /// Where it happened, by its own news or by the lack of it. There is no such time if they contradict each other.
+    #[serde(default, with = "micros", skip_serializing_if = "Option::is_none")]
     pub(crate) evidence: Option<Interval>,
+    /// It is known to have happened: heard, imagined, or implied by news of what follows it.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub(crate) settled: bool,
     /// The news contradicts the model: the evidence stands against the link.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub(crate) overruled: bool,
 }
 
-/// From the earliest to the latest, in microseconds after the origin.
-pub(crate) type Interval = (i64, i64);
+/// When and how an event was fixed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(from = "(i64, How, u32)", into = "(i64, How, u32)")]
+pub struct Fixed {
+    /// When.
+    pub time: Time,
+    /// How.
+    pub how: How,
+    /// Its place among the events fixed so far.
+    pub sequence: u32,
+}
 
-const ANYTIME: Interval = (i64::MIN, i64::MAX);
+impl From<(i64, How, u32)> for Fixed {
+    fn from((time, how, sequence): (i64, How, u32)) -> Fixed {
+        Fixed { time: Time::from_micros(time), how, sequence }
+    }
+}
+
+impl From<Fixed> for (i64, How, u32) {
+    fn from(Fixed { time, how, sequence }: Fixed) -> (i64, How, u32) {
+        (time.as_micros(), how, sequence)
+    }
+}
 
 /// All that is known.
 #[derive(Clone, Debug)]
@@ -87,7 +112,7 @@ impl Knowledge {
 
     /// What was known of an event is known again.
     pub(crate) fn recall(&mut self, event: EventId, known: Known) {
-        self.fixed = self.fixed.max(known.fixed.map_or(0, |_| known.sequence + 1));
+        self.fixed = self.fixed.max(known.fixed.map_or(0, |fixed| fixed.sequence + 1));
         self.events[event.index()] = known;
     }
 
@@ -101,27 +126,24 @@ impl Knowledge {
     }
 
     /// Fixes an event; false if it is fixed already.
-    pub(crate) fn fix(&mut self, event: EventId, time: i64, how: How) -> bool {
+    pub(crate) fn fix(&mut self, event: EventId, time: Time, how: How) -> bool {
         if self.of(event).fixed.is_some() {
             return false;
         }
         let sequence = self.fixed;
-        let known = self.change(event);
-        known.fixed = Some((Time::from_micros(time), how));
-        known.sequence = sequence;
+        self.change(event).fixed = Some(Fixed { time, how, sequence });
         self.fixed += 1;
         true
     }
 
-    pub(crate) fn hear(&mut self, event: EventId, now: i64) {
-        self.change(event).observed = Some(Time::from_micros(now));
+    pub(crate) fn hear(&mut self, event: EventId, now: Time) {
+        self.change(event).observed = Some(now);
     }
 
     /// The event happened in this interval, as far as its own news or silence tells.
-    pub(crate) fn add_evidence(&mut self, event: EventId, (low, high): Interval) {
+    pub(crate) fn add_evidence(&mut self, event: EventId, evidence: Interval) {
         let known = self.change(event);
-        let before = known.evidence.unwrap_or(ANYTIME);
-        known.evidence = Some((before.0.max(low), before.1.min(high)));
+        known.evidence = Some(known.evidence.unwrap_or(Interval::ANYTIME).and(evidence));
         known.settled = true;
     }
 
@@ -135,14 +157,12 @@ impl Knowledge {
 
     /// How far the execution has got, for planning what is left of it: when our events were executed, and the intervals in
     /// which Nature's happened that are known to have.
-    pub(crate) fn progress(&mut self, network: &Network) -> Vec<Option<(Time, Time)>> {
+    pub(crate) fn progress(&mut self, network: &Network) -> Vec<Option<Interval>> {
         self.settle_ancestors(network);
         let happened = self.all_happened(network);
         let known = network.event_ids().map(|event| match (network.link_of(event), self.of(event)) {
-            (None, known) => known.fixed.map(|(time, _)| (time, time)),
-            (Some(_), known) if known.settled => {
-                happened[event.index()].map(|(low, high)| (Time::from_micros(low), Time::from_micros(high)))
-            }
+            (None, known) => known.fixed.map(|fixed| Interval::at(fixed.time)),
+            (Some(_), known) if known.settled => happened[event.index()],
             _ => None,
         });
         known.collect()
@@ -167,9 +187,9 @@ impl Knowledge {
     /// The interval in which an event happened or will happen; `None` while its tree has not begun.
     pub(crate) fn happened(&self, network: &Network, event: EventId) -> Option<Interval> {
         let root = self.root[event.index()];
-        let start = self.of(root).fixed?.0.as_micros();
+        let start = self.of(root).fixed?.time;
         if event == root {
-            return Some((start, start));
+            return Some(Interval::at(start));
         }
         Some(self.intervals(network, root, start)[self.number[event.index()] as usize])
     }
@@ -184,16 +204,15 @@ impl Knowledge {
             latest = latest.checked_add(link.upper)?;
             at = link.from;
         }
-        self.of(root).fixed?.0.checked_add(latest)
+        self.of(root).fixed?.time.checked_add(latest)
     }
 
     /// The same for all events.
     pub(crate) fn all_happened(&self, network: &Network) -> Vec<Option<Interval>> {
         let mut all = vec![None; self.events.len()];
         for root in network.event_ids().filter(|&event| self.root[event.index()] == event) {
-            let Some((start, _)) = self.of(root).fixed else { continue };
-            let start = start.as_micros();
-            all[root.index()] = Some((start, start));
+            let Some(Fixed { time: start, .. }) = self.of(root).fixed else { continue };
+            all[root.index()] = Some(Interval::at(start));
             for (event, interval) in self.trees[root.index()].iter().zip(self.intervals(network, root, start))
             {
                 all[event.index()] = Some(interval);
@@ -203,62 +222,56 @@ impl Knowledge {
     }
 
     /// The intervals of the contingent events of a tree that began at `start`.
-    fn intervals(&self, network: &Network, root: EventId, start: i64) -> Vec<Interval> {
+    fn intervals(&self, network: &Network, root: EventId, start: Time) -> Vec<Interval> {
         let tree = &self.trees[root.index()];
         let link = |event: EventId| link_to(network, event);
         // Up: what the evidence of an event and of all that follows it allows.
-        let mut allowed: Vec<Interval> =
-            tree.iter().map(|event| self.of(*event).evidence.unwrap_or(ANYTIME)).collect();
+        let evidence = tree.iter().map(|&event| self.of(event).evidence.unwrap_or(Interval::ANYTIME));
+        let mut allowed: Vec<Interval> = evidence.collect();
         for at in (0..tree.len()).rev() {
             let ContingentLink { from, lower, upper, .. } = *link(tree[at]);
             if from != root && !self.of(tree[at]).overruled {
-                let (low, high) = allowed[at];
+                let before = allowed[at].earlier(lower, upper);
                 let parent = &mut allowed[self.number[from.index()] as usize];
-                parent.0 = parent.0.max(low.saturating_sub(upper.as_micros()));
-                parent.1 = parent.1.min(high.saturating_sub(lower.as_micros()));
+                *parent = parent.and(before);
             }
         }
         // Down: what the parent and the link allow of that.
         for at in 0..tree.len() {
             let ContingentLink { from, lower, upper, .. } = *link(tree[at]);
-            let (low, high) =
-                if from == root { (start, start) } else { allowed[self.number[from.index()] as usize] };
+            let parent =
+                if from == root { Interval::at(start) } else { allowed[self.number[from.index()] as usize] };
             let here = &mut allowed[at];
             if self.of(tree[at]).overruled {
                 // All that is left of the model: it did not happen before what it follows.
-                here.0 = here.0.max(low).min(here.1);
-                continue;
+                here.earliest = here.earliest.max(parent.earliest).min(here.latest);
+            } else {
+                *here = here.and(parent.later(lower, upper));
             }
-            here.0 = here.0.max(low.saturating_add(lower.as_micros()));
-            here.1 = here.1.min(high.saturating_add(upper.as_micros()));
         }
         allowed
     }
 }
 
 /// The interval in which an event happened if its news arrives now.
-pub(crate) fn heard_now(link: &ContingentLink, now: i64) -> Interval {
-    let earliest = match link.delay.max {
-        Bound::Finite(max) => now.saturating_sub(max.as_micros()),
-        Bound::Infinite => i64::MIN,
-    };
-    (earliest, now.saturating_sub(link.delay.min.as_micros()))
+pub(crate) fn heard_now(link: &ContingentLink, now: Time) -> Interval {
+    let earliest = link.delay.max.finite().map_or(Time::MIN, |max| now.saturating_sub(max));
+    Interval::new(earliest, now.saturating_sub(link.delay.min))
 }
 
 /// The interval in which an event happened whose news the model rules out, if its activation happened in another: what the
 /// news proves, if either the duration or the delay was other than the model says and nobody knows which.
-pub(crate) fn heard_against(link: &ContingentLink, activation: Interval, now: i64) -> Interval {
-    let (low, high) = heard_now(link, now);
-    let earliest = activation.0.saturating_add(link.lower.as_micros());
-    let latest = activation.1.saturating_add(link.upper.as_micros());
-    if latest < low {
+pub(crate) fn heard_against(link: &ContingentLink, activation: Interval, now: Time) -> Interval {
+    let heard = heard_now(link, now);
+    let by_link = activation.later(link.lower, link.upper);
+    if by_link.latest < heard.earliest {
         // It took longer, or the news did.
-        return (earliest, high);
+        return Interval::new(by_link.earliest, heard.latest);
     }
     // It took less, or the news did. It was after it had begun in any case, and before it was heard of.
-    let low = low.max(activation.0).min(now);
-    let high = if now >= earliest || high < low { now } else { high };
-    (low, high)
+    let earliest = heard.earliest.max(activation.earliest).min(now);
+    let latest = if now >= by_link.earliest || heard.latest < earliest { now } else { heard.latest };
+    Interval::new(earliest, latest)
 }
 
 fn link_to(network: &Network, event: EventId) -> &ContingentLink {

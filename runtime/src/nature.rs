@@ -1,6 +1,8 @@
 //! Nature in a simulation: how long contingent links take and how late their news is.
 
-use kirk_network::{Bound, EventId, Network, Time};
+use kirk_network::{Bound, Duration, EventId, Interval, Network, Time};
+
+use crate::knowledge::heard_now;
 
 /// How Nature chooses where the observations given leave a choice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -48,8 +50,8 @@ pub struct Nature<'a> {
     observations: Vec<Option<Time>>,
     children: Vec<Vec<EventId>>,
     /// Where the observations require each event to be, and where Nature has put it.
-    required: Vec<(i64, i64)>,
-    truth: Vec<i64>,
+    required: Vec<Interval>,
+    truth: Vec<Time>,
 }
 
 impl<'a> Nature<'a> {
@@ -75,8 +77,8 @@ impl<'a> Nature<'a> {
             seed,
             observations: by_event,
             children,
-            required: vec![(i64::MIN, i64::MAX); count],
-            truth: vec![0; count],
+            required: vec![Interval::ANYTIME; count],
+            truth: vec![Time::ZERO; count],
         }
     }
 
@@ -92,41 +94,32 @@ impl<'a> Nature<'a> {
             at += 1;
         }
         self.require(&tree, root);
-        self.truth[root.index()] = time.as_micros();
+        self.truth[root.index()] = time;
         tree.into_iter().map(|event| self.act(event, root, time)).collect()
     }
 
     /// Where the observations of each event and of all that follows it require it to be. Children come after parents.
     fn require(&mut self, tree: &[EventId], root: EventId) {
         for &event in tree {
-            let delay = self.link(event).delay;
-            self.required[event.index()] = match self.observations[event.index()] {
-                None => (i64::MIN, i64::MAX),
-                Some(time) => {
-                    let latest =
-                        delay.max.finite().map_or(i64::MIN, |max| time.as_micros() - max.as_micros());
-                    (latest, time.as_micros() - delay.min.as_micros())
-                }
-            };
+            let observed = self.observations[event.index()];
+            self.required[event.index()] =
+                observed.map_or(Interval::ANYTIME, |time| heard_now(&self.link(event), time));
         }
         for &event in tree.iter().rev() {
             let link = self.link(event);
             if link.from != root {
-                let (low, high) = self.required[event.index()];
+                let before = self.required[event.index()].earlier(link.lower, link.upper);
                 let parent = &mut self.required[link.from.index()];
-                parent.0 = parent.0.max(low.saturating_sub(link.upper.as_micros()));
-                parent.1 = parent.1.min(high.saturating_sub(link.lower.as_micros()));
+                *parent = parent.and(before);
             }
         }
     }
 
     fn act(&mut self, event: EventId, root: EventId, root_time: Time) -> Result<Deed, Impossible> {
         let link = self.link(event);
-        let start = self.truth[link.from.index()];
-        let (lower, upper) = (link.lower.as_micros(), link.upper.as_micros());
-        let (low, high) = self.required[event.index()];
-        let (low, high) = (low.max(start.saturating_add(lower)), high.min(start.saturating_add(upper)));
-        if low > high {
+        let by_link = Interval::at(self.truth[link.from.index()]).later(link.lower, link.upper);
+        let possible = self.required[event.index()].and(by_link);
+        if possible.is_empty() {
             return Err(self.first_impossible(event, root, root_time));
         }
         // Of its own for each event, so that Nature does the same whatever is done first.
@@ -134,29 +127,30 @@ impl<'a> Nature<'a> {
             self.seed ^ (u64::from(event.0) + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15),
         );
         let truth = match self.temper {
-            Temper::Upper => high,
-            Temper::Lower => low,
-            Temper::Random => random.i64(low..=high),
+            Temper::Upper => possible.latest,
+            Temper::Lower => possible.earliest,
+            Temper::Random => any(&mut random, possible),
         };
         self.truth[event.index()] = truth;
-        let min = link.delay.min.as_micros();
+        let min = link.delay.min;
+        let heard = |max| Interval::at(truth).later(min, max);
         let news = match (self.observations[event.index()], link.delay.max) {
-            (Some(given), _) => Some(given.as_micros()),
-            (None, Bound::Finite(max)) => Some(truth.saturating_add(match self.temper {
-                Temper::Upper => max.as_micros(),
-                Temper::Lower => min,
-                Temper::Random => random.i64(min..=max.as_micros()),
-            })),
+            (Some(given), _) => Some(given),
+            (None, Bound::Finite(max)) => Some(match self.temper {
+                Temper::Upper => heard(max).latest,
+                Temper::Lower => heard(max).earliest,
+                Temper::Random => any(&mut random, heard(max)),
+            }),
             (None, Bound::Infinite) => match self.temper {
                 Temper::Upper => None,
                 Temper::Lower => Some(truth.saturating_add(min)),
                 Temper::Random => {
-                    let much_later = min.saturating_add(2 * upper).saturating_add(1_000_000);
-                    random.bool().then(|| truth.saturating_add(random.i64(min..=much_later)))
+                    let more = link.upper.saturating_mul(2).saturating_add(Duration::from_secs(1));
+                    random.bool().then(|| any(&mut random, heard(min.saturating_add(more))))
                 }
             },
         };
-        Ok(Deed { event, truth: Time::from_micros(truth), news: news.map(Time::from_micros) })
+        Ok(Deed { event, truth, news })
     }
 
     fn first_impossible(&self, event: EventId, root: EventId, root_time: Time) -> Impossible {
@@ -178,16 +172,15 @@ impl<'a> Nature<'a> {
 
     fn impossible(&self, event: EventId, time: Time, root: EventId, root_time: Time) -> Impossible {
         let delay = self.link(event).delay;
-        let (mut earliest, mut latest) = (root_time.as_micros(), root_time.as_micros());
+        let mut happens = Interval::at(root_time);
         let mut at = event;
         while at != root {
             let link = self.link(at);
-            earliest = earliest.saturating_add(link.lower.as_micros());
-            latest = latest.saturating_add(link.upper.as_micros());
+            happens = happens.later(link.lower, link.upper);
             at = link.from;
         }
-        let latest = delay.max.finite().map(|max| Time::from_micros(latest.saturating_add(max.as_micros())));
-        let earliest = Time::from_micros(earliest.saturating_add(delay.min.as_micros()));
+        let earliest = happens.earliest.saturating_add(delay.min);
+        let latest = delay.max.finite().map(|max| happens.latest.saturating_add(max));
         Impossible { event, time, earliest, latest }
     }
 
@@ -197,4 +190,9 @@ impl<'a> Nature<'a> {
             None => unreachable!("only contingent events have children of links followed"),
         }
     }
+}
+
+/// Some time of an interval.
+fn any(random: &mut fastrand::Rng, Interval { earliest, latest }: Interval) -> Time {
+    Time::from_micros(random.i64(earliest.as_micros()..=latest.as_micros()))
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use kirk_network::precedence::Precedence;
 use kirk_network::reduce::{Progress, Reduction};
-use kirk_network::{Dispatchable, Network, Time};
+use kirk_network::{Dispatchable, Interval, Network, Time};
 
 use crate::plan::rest;
 
@@ -33,7 +33,7 @@ impl Rebuild {
         network: Arc<Network>,
         precedence: Arc<Precedence>,
         now: Time,
-        known: Vec<Option<(Time, Time)>>,
+        known: Vec<Option<Interval>>,
         version: u64,
     ) -> Rebuild {
         Rebuild { network, precedence, progress: Progress { now, known }, version }

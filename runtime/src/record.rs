@@ -1,11 +1,11 @@
 //! From a dispatcher to the record of its execution.
 
-use kirk_network::time::Interval;
-use kirk_network::{EventId, Network, Time};
+use kirk_network::{EventId, Interval, Network, Time};
 
 use crate::dispatcher::{Dispatcher, Missed};
 use crate::execution::{Execution, FORMAT, Failure, How, Outcome, Row};
 use crate::input::Reason;
+use crate::knowledge::Fixed;
 
 /// The record of an execution up to `end`; `truth` where it is known. At one time what must not come after something else
 /// comes before it.
@@ -17,11 +17,8 @@ pub(crate) fn record(
     truth: &[Option<Time>],
 ) -> Execution {
     let network = dispatcher.network();
-    let sequence = |event: EventId| {
-        let known = dispatcher.known(event);
-        if known.fixed.is_some() { known.sequence } else { u32::MAX }
-    };
-    let mut rows: Vec<((i64, u32, u32), Row)> = Vec::new();
+    let sequence = |event: EventId| dispatcher.known(event).fixed.map_or(u32::MAX, |fixed| fixed.sequence);
+    let mut rows: Vec<((Time, u32, u32), Row)> = Vec::new();
     let all_happened = dispatcher.happened_by(end);
     for event in network.event_ids() {
         let truth = truth.get(event.index()).copied().flatten();
@@ -50,8 +47,8 @@ pub(crate) fn record(
 pub(crate) fn all_over(dispatcher: &Dispatcher) -> Time {
     let happened = dispatcher.all_happened();
     let ends = dispatcher.network().event_ids().filter_map(|event| {
-        let fixed = dispatcher.known(event).fixed.map(|(time, _)| time);
-        fixed.max(happened[event.index()].map(|(_, high)| Time::from_micros(high)))
+        let fixed = dispatcher.known(event).fixed.map(|fixed| fixed.time);
+        fixed.max(happened[event.index()].map(|within| within.latest))
     });
     ends.max().unwrap_or(Time::ZERO)
 }
@@ -60,23 +57,22 @@ pub(crate) fn all_over(dispatcher: &Dispatcher) -> Time {
 pub(crate) fn row(
     dispatcher: &Dispatcher,
     event: EventId,
-    happened: Option<(i64, i64)>,
+    happened: Option<Interval>,
     truth: Option<Time>,
-) -> Option<(i64, Row)> {
+) -> Option<(Time, Row)> {
     let known = dispatcher.known(event);
     let contingent = dispatcher.network().link_of(event).is_some();
     let (time, how, place) = match known.fixed {
-        Some((time, how)) => (Some(time), how, time.as_micros()),
-        None if contingent => (None, How::Never, happened.map_or(i64::MAX, |(_, high)| high)),
+        Some(Fixed { time, how, .. }) => (Some(time), how, time),
+        None if contingent => (None, How::Never, happened.map_or(Time::MAX, |within| within.latest)),
         None => return None,
     };
-    let interval = |(low, high): (i64, i64)| Interval::new(Time::from_micros(low), Time::from_micros(high));
     let row = Row {
         event: String::new(),
         time,
         how,
         observed: contingent.then_some(known.observed),
-        happened: happened.filter(|_| contingent).map(interval),
+        happened: happened.filter(|_| contingent),
         truth,
     };
     Some((place, row))

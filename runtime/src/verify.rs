@@ -9,9 +9,12 @@ use std::collections::{BTreeMap, VecDeque};
 
 use kirk_network::merge::merge;
 use kirk_network::precedence::{precedence, written_pairs};
-use kirk_network::{Bound, EventId, Network, Time};
+use kirk_network::{Duration, EventId, Interval, Network, Time};
 
 use crate::execution::{Execution, FORMAT, How, Outcome, Row};
+
+/// What must come so long before something else goes round in a circle: no sum of bounds is as long.
+const FAR: Duration = Duration::from_micros(1 << 61);
 
 /// Something in the record that contradicts the network. Worded for people.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -38,7 +41,7 @@ pub fn verify(network: &Network, execution: &Execution) -> Vec<Violation> {
     let network = &merge(network).network;
     let mut verifier = Verifier {
         network,
-        makespan: execution.makespan.as_micros(),
+        makespan: execution.makespan,
         facts: vec![None; network.events().len()],
         nature: vec![Vec::new(); network.events().len()],
         latest: Vec::new(),
@@ -58,25 +61,28 @@ pub fn verify(network: &Network, execution: &Execution) -> Vec<Violation> {
 
 struct Verifier<'a> {
     network: &'a Network,
-    makespan: i64,
+    makespan: Time,
     /// What the record says of each event.
     facts: Vec<Option<Fact>>,
-    /// What Nature must respect: from each event, edges (to, most that `to` comes after it).
-    nature: Vec<Vec<(EventId, i64)>>,
+    /// What Nature must respect.
+    nature: Graph,
     /// When each event had happened at the latest, whether heard of or not.
-    latest: Vec<Option<i64>>,
+    latest: Vec<Option<Time>>,
     /// Where each event must have been by what was heard.
-    known: Vec<Option<(i64, i64)>>,
+    known: Vec<Option<Interval>>,
     violations: Vec<Violation>,
 }
 
+/// From each event, edges (to, most that `to` comes after it).
+type Graph = Vec<Vec<(EventId, Duration)>>;
+
 #[derive(Clone, Copy, PartialEq)]
 struct Fact {
-    time: Option<i64>,
+    time: Option<Time>,
     how: How,
-    observed: Option<i64>,
-    truth: Option<i64>,
-    happened: Option<(i64, i64)>,
+    observed: Option<Time>,
+    truth: Option<Time>,
+    happened: Option<Interval>,
 }
 
 impl Verifier<'_> {
@@ -127,11 +133,11 @@ impl Verifier<'_> {
 
     /// The rows are in time order, and what is written to precede something else comes before it at one time.
     fn read_order(&mut self, execution: &Execution) {
-        let when = |row: &Row| row.time.or(row.happened.map(|happened| happened.latest)).map(Time::as_micros);
+        let when = |row: &Row| row.time.or(row.happened.map(|happened| happened.latest));
         let mut rows: Vec<Option<usize>> = vec![None; self.facts.len()];
-        let mut last: Option<(&Row, i64)> = None;
+        let mut last: Option<(&Row, Time)> = None;
         for (at, row) in execution.rows.iter().enumerate() {
-            let time = when(row).unwrap_or(i64::MAX);
+            let time = when(row).unwrap_or(Time::MAX);
             if let Some((before, _)) = last.filter(|&(_, last)| time < last) {
                 let message = format!(
                     "the rows are not in time order: `{}` is listed after `{}`",
@@ -162,11 +168,11 @@ impl Verifier<'_> {
 
     fn take(&mut self, event: EventId, row: &Row) {
         let fact = Fact {
-            time: row.time.map(Time::as_micros),
+            time: row.time,
             how: row.how,
-            observed: row.observed.flatten().map(Time::as_micros),
-            truth: row.truth.map(Time::as_micros),
-            happened: row.happened.map(|within| (within.earliest.as_micros(), within.latest.as_micros())),
+            observed: row.observed.flatten(),
+            truth: row.truth,
+            happened: row.happened,
         };
         if self.facts[event.index()].is_some_and(|other| other != fact) {
             let label = self.network.label(event);
@@ -180,7 +186,7 @@ impl Verifier<'_> {
         if self.network.link_of(event).is_none() {
             match fact {
                 Fact { time: Some(time), how: How::Dispatched, observed: None, truth, happened } => {
-                    if happened.is_some_and(|claim| claim != (time, time)) {
+                    if happened.is_some_and(|claim| claim != Interval::at(time)) {
                         self.say(
                             Some(name),
                             format!("`{name}` is dispatched, but said to have happened at another time"),
@@ -189,7 +195,7 @@ impl Verifier<'_> {
                     if truth.is_some_and(|truth| truth != time) {
                         self.say(Some(name), format!("`{name}` is dispatched, but true at another time"));
                     }
-                    if time < 0 || event == self.network.origin() && time != 0 {
+                    if time < Time::ZERO || event == self.network.origin() && time != Time::ZERO {
                         self.say(Some(name), format!("`{name}` does not respect the origin, which is at 0"));
                     }
                 }
@@ -221,12 +227,12 @@ impl Verifier<'_> {
     /// The bounds on Nature: links, news, silence; and that they can all be true.
     fn build_nature(&mut self) {
         let origin = self.network.origin();
-        let fix = |nature: &mut Vec<Vec<(EventId, i64)>>, event: EventId, low: i64, high: i64| {
-            if high < i64::MAX {
-                nature[origin.index()].push((event, high));
+        let fix = |nature: &mut Graph, event: EventId, within: Interval| {
+            if within.latest < Time::MAX {
+                nature[origin.index()].push((event, within.latest.since_origin()));
             }
-            if low > i64::MIN {
-                nature[event.index()].push((origin, -low));
+            if within.earliest > Time::MIN {
+                nature[event.index()].push((origin, -within.earliest.since_origin()));
             }
         };
         // The same without any news.
@@ -235,35 +241,38 @@ impl Verifier<'_> {
             let Some(fact) = self.facts[event.index()] else { continue };
             match self.network.link_of(event) {
                 None => {
-                    let time = fact.time.unwrap_or_default();
-                    fix(&mut self.nature, event, time, time);
-                    fix(&mut unheard, event, time, time);
+                    let time = Interval::at(fact.time.unwrap_or_default());
+                    fix(&mut self.nature, event, time);
+                    fix(&mut unheard, event, time);
                 }
                 Some(link) => {
                     let link = self.network.contingents()[link];
-                    let (min, max) = (link.delay.min.as_micros(), link.delay.max);
-                    self.nature[link.from.index()].push((event, link.upper.as_micros()));
-                    self.nature[event.index()].push((link.from, -link.lower.as_micros()));
-                    unheard[link.from.index()].push((event, link.upper.as_micros()));
-                    let max = if let Bound::Finite(max) = max { Some(max.as_micros()) } else { None };
+                    self.nature[link.from.index()].push((event, link.upper));
+                    self.nature[event.index()].push((link.from, -link.lower));
+                    unheard[link.from.index()].push((event, link.upper));
                     // News that has not come by the end will come later, or never.
                     let heard = fact.observed.unwrap_or(self.makespan);
-                    let low = max.map_or(i64::MIN, |max| heard.saturating_sub(max));
-                    let high = fact.observed.map_or(i64::MAX, |observed| observed - min);
-                    fix(&mut self.nature, event, low, high);
+                    let low = link.delay.max.finite().map_or(Time::MIN, |max| heard.saturating_sub(max));
+                    let high =
+                        fact.observed.map_or(Time::MAX, |observed| observed.saturating_sub(link.delay.min));
+                    fix(&mut self.nature, event, Interval::new(low, high));
                 }
             }
         }
         // What is known is known without the truth, which nobody in the execution was told.
         let latest = self.longest(origin).unwrap_or_default();
         let earliest = self.longest_to(origin).unwrap_or_default();
-        self.latest = longest(&unheard, origin).unwrap_or_default();
-        self.known = latest.into_iter().zip(earliest).map(|(high, low)| Some((-low?, high?))).collect();
+        let after = |most: Option<Duration>| most.map(Time::after_origin);
+        self.latest = longest(&unheard, origin).unwrap_or_default().into_iter().map(after).collect();
+        let known = |(latest, earliest): (Option<Duration>, Option<Duration>)| {
+            Some(Interval::new(Time::after_origin(-earliest?), Time::after_origin(latest?)))
+        };
+        self.known = latest.into_iter().zip(earliest).map(known).collect();
         for event in self.network.event_ids() {
             if self.network.link_of(event).is_some()
                 && let Some(truth) = self.facts[event.index()].and_then(|fact| fact.truth)
             {
-                fix(&mut self.nature, event, truth, truth);
+                fix(&mut self.nature, event, Interval::at(truth));
             }
         }
         let Some(from_origin) = self.longest(origin) else {
@@ -278,7 +287,7 @@ impl Verifier<'_> {
             }
             return;
         };
-        debug_assert_eq!(from_origin[origin.index()], Some(0));
+        debug_assert_eq!(from_origin[origin.index()], Some(Duration::ZERO));
     }
 
     /// Names an event that was never heard of although its news was to come before the end.
@@ -288,11 +297,10 @@ impl Verifier<'_> {
         };
         let silent = self.facts[event.index()].is_some_and(|fact| fact.observed.is_none());
         let latest = self.latest.get(event.index()).copied().flatten();
-        if let (true, Some(latest), Bound::Finite(max)) = (silent, latest, link.delay.max) {
-            let by = latest.saturating_add(max.as_micros());
+        if let (true, Some(latest), Some(max)) = (silent, latest, link.delay.max.finite()) {
+            let by = latest.saturating_add(max);
             if by < self.makespan {
                 let name = self.network.label(event).to_string();
-                let by = kirk_network::Duration::from_micros(by);
                 self.say(
                     Some(&name),
                     format!("`{name}` was never heard of, though its news was to come by {by} s"),
@@ -311,7 +319,7 @@ impl Verifier<'_> {
             return;
         };
         if let (Some(start), Some(end)) = (time(from), time(to)) {
-            let length = kirk_network::Duration::from_micros(end - start);
+            let length = end.saturating_since(start);
             if length < link.lower || length > link.upper {
                 let name = self.network.label(to).to_string();
                 let message = format!(
@@ -325,9 +333,8 @@ impl Verifier<'_> {
 
     /// What the record claims to follow from itself: where each event must have happened, and when all was over.
     fn check_claims(&mut self, execution: &Execution) {
-        let seconds = kirk_network::Duration::from_micros;
         // The last event was over when it was executed or acted on, or had happened in any case.
-        let (mut over, mut last) = (0, None);
+        let (mut over, mut last) = (Time::ZERO, None);
         let all_recorded = self.network.event_ids().all(|event| self.facts[event.index()].is_some());
         for row in &execution.rows {
             let Some(event) = self.network.find(&row.event) else { continue };
@@ -339,15 +346,11 @@ impl Verifier<'_> {
             {
                 let message = format!(
                     "`{}` is said to have happened in [{}, {}], but what was heard says [{}, {}]",
-                    row.event,
-                    seconds(claim.0),
-                    seconds(claim.1),
-                    seconds(known.0),
-                    seconds(known.1)
+                    row.event, claim.earliest, claim.latest, known.earliest, known.latest
                 );
                 self.say(Some(&row.event), message);
             }
-            let end = fact.time.max(known.map(|(_, high)| high)).unwrap_or_default();
+            let end = fact.time.max(known.map(|known| known.latest)).unwrap_or_default();
             if end > over {
                 (over, last) = (end, Some(row.event.as_str()));
             }
@@ -356,22 +359,22 @@ impl Verifier<'_> {
         if self.makespan < over || all_recorded && self.makespan > over {
             let message = format!(
                 "the makespan is said to be {} s, but the last event, `{}`, came at {} s",
-                seconds(self.makespan),
+                self.makespan,
                 last.unwrap_or_else(|| self.network.label(self.network.origin())),
-                seconds(over)
+                over
             );
             self.say(last, message);
         }
     }
 
     /// For every event the most it can come after `from` in any course of Nature; `None` if there is no such course.
-    fn longest(&self, from: EventId) -> Option<Vec<Option<i64>>> {
+    fn longest(&self, from: EventId) -> Option<Vec<Option<Duration>>> {
         longest(&self.nature, from)
     }
 
     /// For every event the most that `to` can come after it.
-    fn longest_to(&self, to: EventId) -> Option<Vec<Option<i64>>> {
-        let mut reversed: Vec<Vec<(EventId, i64)>> = vec![Vec::new(); self.nature.len()];
+    fn longest_to(&self, to: EventId) -> Option<Vec<Option<Duration>>> {
+        let mut reversed: Graph = vec![Vec::new(); self.nature.len()];
         for (from, edges) in self.nature.iter().enumerate() {
             for &(to, weight) in edges {
                 reversed[to.index()].push((EventId(from as u32), weight));
@@ -382,12 +385,11 @@ impl Verifier<'_> {
 
     fn check_requirements(&mut self) {
         // What must hold between events, worst case: those with a row at once, the others in the end.
-        let mut free: Vec<(EventId, EventId, i64)> = Vec::new();
-        let mut memo: BTreeMap<EventId, Vec<Option<i64>>> = BTreeMap::new();
+        let mut free: Vec<(EventId, EventId, Duration)> = Vec::new();
+        let mut memo: BTreeMap<EventId, Vec<Option<Duration>>> = BTreeMap::new();
         for requirement in self.network.requirements() {
-            let upper = requirement.upper.finite().map(|w| (requirement.from, requirement.to, w.as_micros()));
-            let lower =
-                requirement.lower.finite().map(|w| (requirement.to, requirement.from, -w.as_micros()));
+            let upper = requirement.upper.finite().map(|upper| (requirement.from, requirement.to, upper));
+            let lower = requirement.lower.finite().map(|lower| (requirement.to, requirement.from, -lower));
             for (from, to, weight) in [upper, lower].into_iter().flatten() {
                 if self.facts[from.index()].is_none() || self.facts[to.index()].is_none() {
                     free.push((from, to, weight));
@@ -403,37 +405,36 @@ impl Verifier<'_> {
         self.check_unrecorded(&free);
     }
 
-    fn violated(&mut self, from: EventId, to: EventId, weight: i64, most: Option<i64>) {
-        let seconds = kirk_network::Duration::from_micros;
+    fn violated(&mut self, from: EventId, to: EventId, weight: Duration, most: Option<Duration>) {
         let (a, b) = (self.network.label(from).to_string(), self.network.label(to).to_string());
-        let found = most.map_or("any time".to_string(), |most| format!("{} s", seconds(most)));
-        let message = if weight < 0 {
-            let found = most.map_or("any time".to_string(), |most| format!("{} s", seconds(-most)));
+        let found = most.map_or("any time".to_string(), |most| format!("{most} s"));
+        let message = if weight < Duration::ZERO {
+            let found = most.map_or("any time".to_string(), |most| format!("{} s", -most));
             format!(
                 "`{a}` must come at least {} s after `{b}`, but came (or may have come) {found} after it",
-                seconds(-weight)
+                -weight
             )
         } else {
             format!(
-                "`{b}` must come at most {} s after `{a}`, but came (or may have come) {found} after it",
-                seconds(weight)
+                "`{b}` must come at most {weight} s after `{a}`, but came (or may have come) {found} after it"
             )
         };
         self.say(Some(&b), message);
     }
 
     /// Are there times for the events without a row? They are ours, so they must suit every course of Nature.
-    fn check_unrecorded(&mut self, requirements: &[(EventId, EventId, i64)]) {
+    fn check_unrecorded(&mut self, requirements: &[(EventId, EventId, Duration)]) {
         let origin = self.network.origin();
         let latest = self.longest(origin).unwrap_or_default();
-        let interval = |event: EventId| -> Option<(i64, i64)> {
-            let high = latest.get(event.index()).copied().flatten()?;
-            let low = self.longest(event)?.get(origin.index()).copied().flatten().map(|most| -most)?;
-            Some((low, high))
+        // What is known of an event: the least and the most that it comes after the origin.
+        let since_origin = |event: EventId| -> Option<(Duration, Duration)> {
+            let most = latest.get(event.index()).copied().flatten()?;
+            let least = self.longest(event)?.get(origin.index()).copied().flatten().map(|most| -most)?;
+            Some((least, most))
         };
-        let mut edges: Vec<(usize, usize, i64)> = Vec::new();
+        let mut edges: Vec<(usize, usize, Duration)> = Vec::new();
         for event in self.network.event_ids().filter(|event| self.facts[event.index()].is_none()) {
-            edges.push((event.index(), origin.index(), 0));
+            edges.push((event.index(), origin.index(), Duration::ZERO));
         }
         for &(from, to, weight) in requirements {
             let mut weight = weight;
@@ -441,15 +442,15 @@ impl Verifier<'_> {
                 if self.facts[event.index()].is_none() {
                     return Some(event.index());
                 }
-                let (low, high) = interval(event)?;
+                let (least, most) = since_origin(event)?;
                 // `to - from <= weight` with a recorded end becomes a bound against the origin.
-                weight = if latest { weight.saturating_sub(high) } else { weight.saturating_add(low) };
+                weight = if latest { weight.saturating_sub(most) } else { weight.saturating_add(least) };
                 Some(origin.index())
             };
             let (Some(from), Some(to)) = (end(from, false), end(to, true)) else { continue };
             edges.push((from, to, weight));
         }
-        let mut most = vec![0_i64; self.network.events().len()];
+        let mut most = vec![Duration::ZERO; self.network.events().len()];
         for _ in 0..=most.len() {
             let mut changed = None;
             for &(from, to, weight) in &edges {
@@ -461,7 +462,7 @@ impl Verifier<'_> {
             }
             match changed {
                 None => return,
-                Some(event) if most[event] < -(1_i64 << 61) => break,
+                Some(event) if most[event] < -FAR => break,
                 Some(_) => {}
             }
         }
@@ -473,11 +474,11 @@ impl Verifier<'_> {
 }
 
 /// Bellman-Ford: for every event the length of the shortest path from `from`; `None` if there is a negative cycle.
-fn longest(edges: &[Vec<(EventId, i64)>], from: EventId) -> Option<Vec<Option<i64>>> {
+fn longest(edges: &Graph, from: EventId) -> Option<Vec<Option<Duration>>> {
     let count = edges.len();
-    let mut most: Vec<Option<i64>> = vec![None; count];
+    let mut most: Vec<Option<Duration>> = vec![None; count];
     let mut length = vec![0_usize; count];
-    most[from.index()] = Some(0);
+    most[from.index()] = Some(Duration::ZERO);
     let mut open = VecDeque::from([from]);
     let mut queued = vec![false; count];
     while let Some(event) = open.pop_front() {

@@ -263,7 +263,7 @@ impl Life {
                     sends.push(sending);
                 }
                 Output::Fixed { event, .. } => {
-                    let time = self.executive.dispatcher().known(event).fixed.unwrap().0;
+                    let time = self.executive.dispatcher().known(event).fixed.unwrap().time;
                     let handed = self.setup.handovers.iter().any(|handover| handover.event == event);
                     if self.network.link_of(event).is_none() && (!handed || event == self.network.origin()) {
                         self.comes_true(event, time.as_micros(), nature)?;

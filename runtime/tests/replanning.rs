@@ -1,6 +1,6 @@
 //! News that says more than the plan assumed is planned with, but only if that can make a difference.
 
-use kirk_network::{Time, json};
+use kirk_network::{Interval, Time, json};
 use kirk_runtime::{Dispatcher, Plan, Reception, Settings, Strategy};
 
 /// Nothing is heard of `b` by 8, so its end is imagined then and `x` executed; the news comes at 9. `y` is to come.
@@ -22,7 +22,11 @@ fn planned_anew(also: &str) -> bool {
     assert!(dispatcher.known(x).fixed.is_some(), "x follows b");
     assert!(dispatcher.poll_rebuild(second(8)).is_none(), "there was no news");
     assert_eq!(dispatcher.handle_observation(second(9), b), Reception::Accepted);
-    assert_eq!(dispatcher.happened(b), Some((6_000_000, 7_000_000)), "the news says more than [5, 7]");
+    assert_eq!(
+        dispatcher.happened(b),
+        Some(Interval::new(Time::from_micros(6_000_000), Time::from_micros(7_000_000))),
+        "the news says more than [5, 7]"
+    );
     dispatcher.poll_rebuild(second(9)).is_some()
 }
 

@@ -13,23 +13,23 @@ use crate::execution::How;
 pub(super) struct InFlight {
     pub(super) event: EventId,
     pub(super) node: u32,
-    pub(super) due: i64,
+    pub(super) due: Time,
     /// What decided when it is due.
     pub(super) cause: Cause,
     /// Since when it is, if it was confirmed before it is due: until then news may still bring it forward.
-    pub(super) executed: Option<i64>,
+    pub(super) executed: Option<Time>,
 }
 
 impl Dispatcher {
     /// When a node that is due counts as executed, if it is taken in hand now.
-    pub(super) fn executed_at(&self, node: u32) -> i64 {
+    pub(super) fn executed_at(&self, node: u32) -> Time {
         let due = self.agenda.due(node);
         let carried_out = self.is_carried_out(self.reduction.event_of[node as usize]);
         if carried_out { self.recorded(due, self.now, self.agenda.upper(node)) } else { due }
     }
 
     /// The next event that was confirmed before it is due, and when it counts as executed: then, or when its window closes.
-    pub(super) fn next_early(&self) -> Option<(i64, usize)> {
+    pub(super) fn next_early(&self) -> Option<(Time, usize)> {
         let early = self.in_flight.iter().enumerate().filter_map(|(index, flight)| {
             let since = flight.executed?;
             Some((flight.due.min(self.agenda.upper(flight.node)).max(since), index))
@@ -40,20 +40,20 @@ impl Dispatcher {
     /// An event in flight was executed, `at` some time up to now. What follows it can go on. One that was executed before it
     /// was due stays in flight until it is.
     pub fn handle_executed(&mut self, now: Time, event: EventId, at: Time) {
-        self.now = self.now.max(now.as_micros());
+        self.now = self.now.max(now);
         let Some(found) = self.in_flight.iter().position(|flight| flight.event == event) else { return };
         let InFlight { node, due, cause, .. } = self.in_flight[found];
         self.version += 1;
         if due > self.now {
-            self.in_flight[found].executed = Some(at.as_micros());
+            self.in_flight[found].executed = Some(at);
             return;
         }
         self.in_flight.remove(found);
-        let time = self.recorded(due, at.as_micros(), self.agenda.upper(node));
+        let time = self.recorded(due, at, self.agenda.upper(node));
         self.executed(InFlight { event, node, due, cause, executed: None }, time);
     }
 
-    pub(super) fn executed(&mut self, flight: InFlight, time: i64) {
+    pub(super) fn executed(&mut self, flight: InFlight, time: Time) {
         let InFlight { event, node, due, cause, .. } = flight;
         if self.in_time(due, time, node) {
             self.fix(event, time, How::Dispatched, in_truth(cause, due, time));
@@ -63,7 +63,7 @@ impl Dispatcher {
 
     /// An event in flight cannot be executed any more: the execution has failed.
     pub fn handle_failed(&mut self, now: Time, event: EventId) {
-        self.now = self.now.max(now.as_micros());
+        self.now = self.now.max(now);
         if let Some(found) = self.in_flight.iter().position(|flight| flight.event == event) {
             let InFlight { node, due, .. } = self.in_flight.remove(found);
             self.version += 1;
@@ -74,7 +74,7 @@ impl Dispatcher {
     /// The latest time at which an event in flight can be executed, if there is one.
     pub fn latest(&self, event: EventId) -> Option<Time> {
         let flight = self.in_flight.iter().find(|flight| flight.event == event)?;
-        Some(self.agenda.upper(flight.node)).filter(|&upper| upper < i64::MAX).map(Time::from_micros)
+        Some(self.agenda.upper(flight.node)).filter(|&upper| upper < Time::MAX)
     }
 
     /// True if somebody carries an event out.
@@ -92,7 +92,7 @@ impl Dispatcher {
         self.in_flight.iter().any(|flight| flight.event == event)
     }
 
-    pub(super) fn execute(&mut self, time: i64, node: u32) {
+    pub(super) fn execute(&mut self, time: Time, node: u32) {
         let due = self.agenda.due(node);
         if !self.in_time(due, time, node) {
             return;
@@ -100,7 +100,7 @@ impl Dispatcher {
         let event = self.reduction.event_of[node as usize];
         let cause = self.cause_of_due(node, due);
         self.version += 1;
-        self.dispatches.push_back(Dispatch { event, time: Time::from_micros(due) });
+        self.dispatches.push_back(Dispatch { event, time: due });
         if self.settings.confirmed && self.is_carried_out(event) {
             self.agenda.take(node);
             self.in_flight.push(InFlight { event, node, due, cause, executed: None });
@@ -112,11 +112,11 @@ impl Dispatcher {
 
     /// When an event that was due and is executed `at` some time is recorded: when due, unless that is too long ago. What
     /// is late for its window by no more than is allowed counts as just in time.
-    pub(super) fn recorded(&self, due: i64, at: i64, latest: i64) -> i64 {
-        let lateness = self.settings.lateness.as_micros();
-        if at.saturating_sub(due) <= lateness {
+    pub(super) fn recorded(&self, due: Time, at: Time, latest: Time) -> Time {
+        let lateness = self.settings.lateness;
+        if at.saturating_since(due) <= lateness {
             due
-        } else if at > latest && at.saturating_sub(latest) <= lateness {
+        } else if at > latest && at.saturating_since(latest) <= lateness {
             latest
         } else {
             at
@@ -124,7 +124,7 @@ impl Dispatcher {
     }
 
     /// False, and the end of it all, if an event would be executed after its window.
-    pub(super) fn in_time(&mut self, due: i64, time: i64, node: u32) -> bool {
+    pub(super) fn in_time(&mut self, due: Time, time: Time, node: u32) -> bool {
         let latest = self.agenda.upper(node);
         if time > latest {
             self.miss(self.reduction.event_of[node as usize], due, time, latest);
@@ -132,17 +132,16 @@ impl Dispatcher {
         time <= latest
     }
 
-    pub(super) fn miss(&mut self, event: EventId, due: i64, time: i64, latest: i64) {
-        let [due, time, latest] = [due, time, latest].map(Time::from_micros);
+    pub(super) fn miss(&mut self, event: EventId, due: Time, time: Time, latest: Time) {
         self.missed = Some(Missed { event, time, due, latest });
     }
 }
 
 /// What decided when an event was executed, if something decided when it was due.
-fn in_truth(cause: Cause, due: i64, time: i64) -> Cause {
+fn in_truth(cause: Cause, due: Time, time: Time) -> Cause {
     match due.cmp(&time) {
         Ordering::Equal => cause,
-        Ordering::Less => Cause::Late { due: Time::from_micros(due) },
-        Ordering::Greater => Cause::Closed { due: Time::from_micros(due) },
+        Ordering::Less => Cause::Late { due },
+        Ordering::Greater => Cause::Closed { due },
     }
 }

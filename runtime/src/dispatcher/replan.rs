@@ -5,7 +5,7 @@ use std::sync::Arc;
 use kirk_network::precedence::Precedence;
 use kirk_network::{EventId, Network, Time};
 
-use super::{Dispatcher, Settings, agenda};
+use super::{Dispatcher, Settings, agenda, whereabouts};
 use crate::cause::Cause;
 use crate::execution::How;
 use crate::knowledge::Knowledge;
@@ -31,7 +31,7 @@ impl Dispatcher {
             return None;
         }
         self.asked = true;
-        Some(self.rebuild(self.now.max(now.as_micros())))
+        Some(self.rebuild(self.now.max(now)))
     }
 
     /// True if this is the plan for all that has happened.
@@ -56,7 +56,7 @@ impl Dispatcher {
         };
         self.agenda = agenda(&reduction, &net, |event| self.settings.lead_of(self.is_carried_out(event)));
         self.reduction = reduction;
-        self.take_up(rebuilt.now.as_micros());
+        self.take_up(rebuilt.now);
         Adoption::Followed
     }
 
@@ -65,19 +65,18 @@ impl Dispatcher {
         let executed = |event: EventId| self.agenda.executed(self.reduction.places[event.index()].node);
         // Not yet executed: the plan is still to wait for it.
         let Some(node) = executed(event) else { return true };
-        let place = self.reduction.places[event.index()];
-        let assumed = (node.saturating_add(place.earliest), node.saturating_add(place.latest));
+        let assumed = whereabouts(&self.reduction.places[event.index()], node);
         let to_come = |event| executed(event).is_none();
         self.happened(event) != Some(assumed)
             && self.measured.concerns_the_rest(event, &self.knowledge, to_come)
     }
 
     /// Puts what is known in place of the links, for what is left to be planned anew.
-    fn rebuild(&mut self, from: i64) -> Rebuild {
+    fn rebuild(&mut self, from: Time) -> Rebuild {
         let network = Arc::clone(&self.network);
         let known = self.knowledge.progress(&network);
         let precedence = Arc::clone(&self.precedence);
-        Rebuild::new(network, precedence, Time::from_micros(from), known, self.version)
+        Rebuild::new(network, precedence, from, known, self.version)
     }
 
     /// The events of which something has become known since the last checkpoint. The time is not among what is known: it
@@ -101,12 +100,12 @@ impl Dispatcher {
         let plan = Plan { network: Arc::clone(network), reduction, net, precedence };
         let mut dispatcher = Dispatcher::following(plan, settings, knowledge);
         dispatcher.version = version;
-        dispatcher.take_up(planned.as_micros());
+        dispatcher.take_up(planned);
         Some(dispatcher)
     }
 
     /// Begins to follow a plan that was made at some time: what it takes for known is fixed.
-    fn take_up(&mut self, planned: i64) {
+    fn take_up(&mut self, planned: Time) {
         self.active.clear();
         self.activate_from_origin();
         let anew = self.anew();
@@ -114,7 +113,7 @@ impl Dispatcher {
         for event in self.network.event_ids() {
             let known = *self.known(event);
             if known.settled && known.fixed.is_none() {
-                let (time, how, cause) = match known.observed.map(Time::as_micros) {
+                let (time, how, cause) = match known.observed {
                     // Lateness of ours is not held against the news.
                     Some(heard) if self.recorded(heard, planned, planned) == heard => {
                         (heard, How::Observed, Cause::News)
@@ -132,7 +131,7 @@ impl Dispatcher {
         for event in self.network.event_ids() {
             let known = *self.known(event);
             if let (Some(heard), None, true) = (known.observed, known.fixed, self.is_hidden(event)) {
-                self.fix(event, heard.as_micros(), How::Observed, Cause::News);
+                self.fix(event, heard, How::Observed, Cause::News);
             }
         }
     }

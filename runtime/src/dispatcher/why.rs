@@ -32,13 +32,11 @@ impl Dispatcher {
     }
 
     /// What decided when a node of ours is due that nothing holds back.
-    pub(super) fn cause_of_due(&self, node: u32, due: i64) -> Cause {
+    pub(super) fn cause_of_due(&self, node: u32, due: Time) -> Cause {
         match (self.agenda.hold(node), self.anew) {
-            (Hold::Nothing | Hold::After { node: 0, distance: 0 }, None) => Cause::Start,
+            (Hold::Nothing | Hold::After { node: 0, distance: Duration::ZERO }, None) => Cause::Start,
             (Hold::Nothing | Hold::After { node: 0, .. }, Some(anew)) => anew,
-            (Hold::After { node, distance }, _) => {
-                Cause::After { event: self.acted_on(node), distance: Duration::from_micros(distance) }
-            }
+            (Hold::After { node, distance }, _) => Cause::After { event: self.acted_on(node), distance },
             (Hold::Order { node }, _) => Cause::Order { event: self.acted_on(node) },
             (Hold::Wait { link, distance }, _) => {
                 let event = self.acted_on(self.reduction.stnu.links[link as usize].contingent);
@@ -49,12 +47,13 @@ impl Dispatcher {
     }
 
     /// What decided when a contingent node of the plan happens, by the news of an event or without.
-    pub(super) fn cause_of_acting(&self, node: u32, event: EventId, time: i64, how: How) -> Cause {
+    pub(super) fn cause_of_acting(&self, node: u32, event: EventId, time: Time, how: How) -> Cause {
         let Some(link) = self.agenda.ending(node).filter(|_| how != How::Observed) else {
             return Cause::News;
         };
-        let start = self.agenda.executed(self.reduction.stnu.links[link as usize].activation).unwrap_or(0);
-        let (since, distance) = self.since(link, event, time, time.saturating_sub(start));
+        let start =
+            self.agenda.executed(self.reduction.stnu.links[link as usize].activation).unwrap_or(Time::ZERO);
+        let (since, distance) = self.since(link, event, time, time.saturating_since(start));
         match how {
             How::Imagined => Cause::NoNews { event, since, distance },
             _ => Cause::Held { since, distance },
@@ -69,13 +68,13 @@ impl Dispatcher {
 
     /// From where a time is measured that is so long after the activation of a link: where a new plan has the origin for all
     /// that has happened, from what Nature measures from.
-    fn since(&self, link: u32, event: EventId, time: i64, distance: i64) -> (EventId, Duration) {
+    fn since(&self, link: u32, event: EventId, time: Time, distance: Duration) -> (EventId, Duration) {
         let activation = self.reduction.stnu.links[link as usize].activation;
         let from = self.network.link_of(event).map(|link| self.network.contingents()[link].from);
-        let fixed = from.and_then(|from| Some((from, self.known(from).fixed?.0)));
+        let fixed = from.and_then(|from| Some((from, self.known(from).fixed?.time)));
         match fixed.filter(|_| activation == 0 && self.anew.is_some()) {
-            Some((from, start)) => (from, Duration::from_micros(time.saturating_sub(start.as_micros()))),
-            None => (self.acted_on(activation), Duration::from_micros(distance)),
+            Some((from, start)) => (from, time.saturating_since(start)),
+            None => (self.acted_on(activation), distance),
         }
     }
 
@@ -91,19 +90,18 @@ impl Dispatcher {
 
     /// The last event that a requirement keeps just as far before another as it was.
     fn by_requirement(&self, event: EventId) -> Option<Cause> {
-        let (time, sequence) = (self.known(event).fixed?.0, self.known(event).sequence);
+        let fixed = self.known(event).fixed?;
         let before = |other: EventId, distance: Duration| {
-            let known = self.known(other);
-            let (at, _) = known.fixed.filter(|_| known.sequence < sequence)?;
-            let latest = Time::from_micros(self.happened(other)?.1);
-            if latest.checked_add(distance) != Some(time) {
+            let earlier = self.known(other).fixed.filter(|other| other.sequence < fixed.sequence)?;
+            let latest = self.happened(other)?.latest;
+            if latest.checked_add(distance) != Some(fixed.time) {
                 return None;
             }
-            let cause = match at == latest {
+            let cause = match earlier.time == latest {
                 true => Cause::After { event: other, distance },
                 false => Cause::Surely { event: other, latest, distance },
             };
-            Some((known.sequence, cause))
+            Some((earlier.sequence, cause))
         };
         let keeps = |&Requirement { from, to, lower, upper }: &Requirement| {
             let (other, distance) = match event {

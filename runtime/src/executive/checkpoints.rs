@@ -1,15 +1,16 @@
 //! From an executive to what it knows, and back.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use kirk_network::{EventId, Network, Time};
 
 use super::{Broken, Executive, Setup};
+use crate::activity::Handover;
 use crate::checkpoint::Checkpoint;
 use crate::dispatcher::Dispatcher;
-use crate::knowledge::{Knowledge, Known};
-use crate::order::State;
+use crate::knowledge::Knowledge;
+use crate::order::Orders;
 use crate::replay::names;
 
 impl Executive {
@@ -20,11 +21,10 @@ impl Executive {
         let timed = |list: &[(Time, EventId)]| {
             list.iter().map(|&(time, event)| (time.as_micros(), name(event))).collect::<Vec<_>>()
         };
-        let changed = self.orders.iter().enumerate().filter(|(_, order)| !order.kept);
-        let checkpoint = Checkpoint {
+        Checkpoint {
             versions: (self.dispatcher.version(), self.changes),
-            events: touched.iter().map(|&event| (name(event), self.dispatcher.known(event).into())).collect(),
-            orders: changed.map(|(at, order)| (at as u32, order.into())).collect(),
+            events: touched.iter().map(|&event| (name(event), *self.dispatcher.known(event))).collect(),
+            orders: self.orders.checkpoint(),
             held: timed(&self.held),
             awaited: timed(&self.awaited),
             broken: self
@@ -32,11 +32,7 @@ impl Executive {
                 .iter()
                 .map(|broken| (broken.arrived.as_micros(), name(broken.event), broken.said.clone()))
                 .collect(),
-        };
-        for order in &mut self.orders {
-            order.kept = order.state == State::Done;
         }
-        checkpoint
     }
 
     /// The executive that knew all this and then, at `now`, went on with a plan that was made of it for `planned`.
@@ -55,7 +51,7 @@ impl Executive {
             |name: &String| names.get(name.as_str()).copied().ok_or(format!("there is no event `{name}`"));
         let mut knowledge = Knowledge::new(network);
         for (name, event) in &known.events {
-            knowledge.recall(find(name)?, Known::from(event));
+            knowledge.recall(find(name)?, *event);
         }
         let settings = setup.settings_for(network);
         let dispatcher = Dispatcher::restored(network, settings, knowledge, known.versions.0, planned)
@@ -71,21 +67,16 @@ impl Executive {
             let (event, arrived) = (find(name)?, Time::from_micros(*arrived));
             executive.broken.push(Broken { event, arrived, said: said.clone() });
         }
-        let by_name: HashMap<&str, usize> = executive
-            .handovers
-            .iter()
-            .enumerate()
-            .map(|(at, handover)| (handover.name.as_str(), at))
+        let by_name: HashMap<&str, &Handover> =
+            executive.handovers.iter().map(|handover| (handover.name.as_str(), handover)).collect();
+        let handover = |name: &str| by_name.get(name).copied().cloned();
+        executive.orders = Orders::recall(&known.orders, &executive.run, handover)?;
+        let told: HashSet<EventId> = known
+            .orders
+            .values()
+            .filter_map(|course| Some(by_name.get(course.name.as_str())?.event))
             .collect();
-        let mut orders = Vec::new();
-        for order in known.orders.values() {
-            let at =
-                by_name.get(order.name.as_str()).ok_or(format!("`{}` is not handed over", order.name))?;
-            orders.push(order.order(&executive.run, &executive.handovers[*at]));
-        }
-        let told = |event: &EventId| orders.iter().any(|order| order.event == *event);
-        executive.unannounced.retain(|event| !told(event));
-        executive.orders = orders;
+        executive.unannounced.retain(|event| !told.contains(event));
         executive.mend();
         executive.timeout(now);
         Ok(executive)

@@ -1,8 +1,8 @@
 //! What becomes of news: taken, held until nothing is in flight, of no use, or against the model; and of news that never comes.
 
-use kirk_network::{EventId, Time};
+use kirk_network::{Duration, EventId, Time};
 
-use super::{Broken, Executive, MICROSECOND, Output};
+use super::{Broken, Executive, Output};
 use crate::dispatcher::Reception;
 use crate::input::{Answer, Why};
 
@@ -16,7 +16,7 @@ impl Executive {
             return Answer::Ignored(Why::NotNatures);
         }
         // What was due before comes before; at one time Nature comes first.
-        self.timeout(arrived.saturating_sub(MICROSECOND));
+        self.timeout(arrived.saturating_sub(Duration::SHORTEST));
         if self.over {
             return Answer::Ignored(Why::Over);
         }

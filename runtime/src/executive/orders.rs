@@ -2,51 +2,47 @@
 
 use kirk_network::{Duration, EventId, Time};
 
-use super::{Executive, MICROSECOND, Output, Sending};
-use crate::activity::Handover;
+use super::{Executive, Output, Sending};
 use crate::input::{Answer, Reason, Why};
-use crate::order::{Order, State};
+use crate::order::{Course, Order, State};
 
 impl Executive {
     /// An attempt leaves for the driver now, unless its window has closed meanwhile.
     pub(super) fn sent(&mut self, now: Time, id: &str) -> Answer {
-        let Some(at) = self.orders.iter().position(|order| order.id == id && order.state == State::Sent)
-        else {
+        let Some(at) = self.orders.open.iter().position(|order| order.id == id && order.is_sent()) else {
             return Answer::Ignored(Why::NotWithDriver);
         };
         let closes = self.closes(at);
-        let order = &mut self.orders[at];
+        let course = &mut self.orders.open[at].course;
         self.changes += 1;
         if closes.is_some_and(|closes| now > closes) {
-            order.reason = "it could not be recorded in time".to_string();
-            order.state = State::Waiting(now);
+            course.reason = "it could not be recorded in time".to_string();
+            course.state = State::Waiting(now);
             self.settle(now);
             return Answer::Ignored(Why::TooLate);
         }
-        if !order.doubtful {
-            order.started = now;
+        if !course.doubtful {
+            course.started = now;
         }
-        if order.attempts == 1 {
-            order.first_sent = now;
+        if course.attempts == 1 {
+            course.first_sent = now;
         }
         Answer::Accepted
     }
 
     /// The driver has executed what was handed over, `ago` before now if it says so.
     pub(super) fn executed(&mut self, now: Time, id: &str, ago: Option<Duration>) -> Answer {
-        let open = |order: &&mut Order| order.id == id && order.state != State::Done;
-        let Some(order) = self.orders.iter_mut().find(open) else {
+        let open = |order: &&mut Order| order.id == id && !order.is_done();
+        let Some(Order { event, course, .. }) = self.orders.open.iter_mut().find(open) else {
             return Answer::Ignored(Why::NotWithDriver);
         };
-        order.state = State::Done;
+        course.state = State::Done;
         if let Some(at) = ago.and_then(|ago| now.checked_sub(ago)) {
-            order.started = at.max(order.first_sent);
+            course.started = at.max(course.first_sent);
         }
         self.changes += 1;
-        let event = order.event;
-        let of_event = || self.orders.iter().filter(|order| order.event == event);
-        if of_event().all(|order| order.state == State::Done) {
-            let started = of_event().map(|order| order.started).max().unwrap_or(now);
+        let event = *event;
+        if let Some(started) = self.orders.close(event) {
             self.dispatcher.handle_executed(now, event, started);
         }
         self.settle(now);
@@ -57,13 +53,13 @@ impl Executive {
     /// The driver could not execute what was handed over, or in case of `doubt` nobody knows.
     pub(super) fn failed(&mut self, now: Time, id: &str, reason: &str, doubt: bool) -> Answer {
         let patience = self.patience;
-        let sent = |order: &&mut Order| order.id == id && order.state == State::Sent;
-        let Some(order) = self.orders.iter_mut().find(sent) else {
+        let sent = |order: &&mut Order| order.id == id && order.is_sent();
+        let Some(order) = self.orders.open.iter_mut().find(sent) else {
             return Answer::Ignored(Why::NotWithDriver);
         };
         order.failed(now, reason, patience);
         // One that says no had not done it before either.
-        order.doubtful = doubt;
+        order.course.doubtful = doubt;
         self.changes += 1;
         self.settle(now);
         Answer::Accepted
@@ -72,17 +68,17 @@ impl Executive {
     /// The executive was away and is back.
     pub(super) fn resumed(&mut self, now: Time, unsent: &[String]) {
         self.changes += 1;
-        for at in 0..self.orders.len() {
-            let order = &mut self.orders[at];
-            if order.state == State::Sent {
-                if unsent.contains(&order.id) {
+        for at in 0..self.orders.open.len() {
+            let Order { id, course, .. } = &mut self.orders.open[at];
+            if course.state == State::Sent {
+                if unsent.contains(id) {
                     // It was never tried, and may be too late by now.
-                    order.attempts -= 1;
-                    order.state = State::Waiting(now);
+                    course.attempts -= 1;
+                    course.state = State::Waiting(now);
                     continue;
                 }
-                order.doubtful = true;
-                order.attempts += 1;
+                course.doubtful = true;
+                course.attempts += 1;
                 self.send(at);
             }
         }
@@ -95,12 +91,9 @@ impl Executive {
         let window = self.dispatcher.window_end(event).map_or(due, |end| end.max(due));
         let closes = window.saturating_add(self.lateness);
         for at in start..end {
-            let Handover { name, companion, .. } = &self.handovers[at as usize];
-            self.orders.push(Order {
-                id: format!("{}/{name}", self.run),
-                event,
-                name: name.clone(),
-                companion: companion.clone(),
+            let handover = self.handovers[at as usize].clone();
+            let course = Course {
+                name: handover.name.clone(),
                 due,
                 closes,
                 first_sent: now,
@@ -109,58 +102,66 @@ impl Executive {
                 state: State::Sent,
                 reason: String::new(),
                 doubtful: false,
-                kept: false,
-            });
-            self.send(self.orders.len() - 1);
+            };
+            self.orders.add(&self.run, handover, course);
+            self.send(self.orders.open.len() - 1);
         }
     }
 
     fn send(&mut self, at: usize) {
-        let Order { id, name, companion, due, attempts, event, .. } = self.orders[at].clone();
-        let latest = self.dispatcher.latest(event);
-        self.outputs.push_back(Output::Send(Sending { id, name, companion, due, latest, attempt: attempts }));
+        let Order { id, event, companion, course, .. } = &self.orders.open[at];
+        let sending = Sending {
+            id: id.clone(),
+            name: course.name.clone(),
+            companion: companion.clone(),
+            due: course.due,
+            latest: self.dispatcher.latest(*event),
+            attempt: course.attempts,
+        };
+        self.outputs.push_back(Output::Send(sending));
     }
 
     /// When it is too late for an order, our lateness allowed for; `None` if it never is.
     pub(super) fn closes(&self, at: usize) -> Option<Time> {
-        let order = &self.orders[at];
+        let order = &self.orders.open[at];
         match self.dispatcher.latest(order.event) {
             Some(latest) => Some(latest.saturating_add(self.lateness)),
             None if self.dispatcher.is_in_flight(order.event) => None,
-            None => Some(order.closes),
+            None => Some(order.course.closes),
         }
     }
 
     /// Tries again what failed, or gives up when its window has closed.
     pub(super) fn look_after(&mut self, at: usize, now: Time) {
-        let State::Waiting(again) = self.orders[at].state else { return };
+        let State::Waiting(again) = self.orders.open[at].course.state else { return };
         let closes = self.closes(at);
-        let latest = self.dispatcher.latest(self.orders[at].event);
+        let latest = self.dispatcher.latest(self.orders.open[at].event);
         if closes.is_some_and(|closes| now > closes) {
             if !self.over {
                 self.give_up(at, now);
             }
         } else if now >= again {
-            let order = &mut self.orders[at];
-            order.attempts += 1;
-            if !order.doubtful {
-                order.started = now;
+            let course = &mut self.orders.open[at].course;
+            course.attempts += 1;
+            if !course.doubtful {
+                course.started = now;
             }
-            order.state = State::Sent;
+            course.state = State::Sent;
             self.changes += 1;
             self.send(at);
         } else if let Some(latest) = latest.filter(|&latest| now < latest && latest < again) {
             // Not counted as a change, so not recorded: it follows from the order and its window alone, and a repetition
             // comes to the same at the next input.
             // One last time while it is open.
-            self.orders[at].state = State::Waiting(latest);
+            self.orders.open[at].course.state = State::Waiting(latest);
         } else if let Some(closes) = closes.filter(|&closes| closes < again) {
-            self.orders[at].state = State::Waiting(closes.saturating_add(MICROSECOND));
+            let after = closes.saturating_add(Duration::SHORTEST);
+            self.orders.open[at].course.state = State::Waiting(after);
         }
     }
 
     fn give_up(&mut self, at: usize, now: Time) {
-        let Order { event, name, attempts, reason, .. } = self.orders[at].clone();
+        let Order { event, course: Course { name, attempts, reason, .. }, .. } = self.orders.open[at].clone();
         self.dispatcher.handle_failed(now, event);
         if attempts == 0 {
             let detail = format!("`{name}` was not handed over in its window: nobody was there to do it");

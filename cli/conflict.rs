@@ -1,21 +1,126 @@
 //! Why a network is not controllable, as a diagnostic and as JSON.
 
-use kirk_compiler::{Diagnostic, Explain};
-use kirk_network::{Conflict, Duration, Network, Part};
+use kirk_compiler::repair::Changed;
+use kirk_compiler::{Explain, Said, Span, Told};
+use kirk_network::assume::Assumption;
+use kirk_network::{Bound, Conflict, Duration, Network, Part};
 use serde::Serialize;
 
 use crate::input::Input;
 use crate::report::{Reporter, SpanJson};
 
-/// The diagnostics of a "no", in the source: one for every conflict.
-pub(crate) fn diagnostics(network: &Network, input: &Input, theory: bool) -> Vec<Diagnostic> {
+/// All there is to say about a "no", in the source: every conflict of a network, which is as assumed. `first` is one of them.
+pub(crate) fn told(
+    first: &Conflict,
+    network: &Network,
+    input: &Input,
+    (assumption, theory): (Assumption, bool),
+) -> Vec<Told> {
     let Some(origins) = input.origins() else { return Vec::new() };
     let (sources, program) = (&input.sources, input.program_span());
-    Explain { network, origins, sources, program, theory }.all().unwrap_or_default()
+    let explain = Explain { network, origins, sources, program, theory };
+    match assumption {
+        // What is elongated is judged otherwise than any network that could be asked about.
+        Assumption::Elongated => vec![explain.one(first)],
+        _ => explain.each().unwrap_or_default(),
+    }
+}
+
+/// A conflict with all there is to say about it.
+#[derive(Serialize)]
+pub(crate) struct ConflictJson<'a> {
+    pub(crate) members: Vec<MemberJson>,
+    /// How much is missing, as a negative amount.
+    total: Duration,
+    conservative: bool,
+    story: Vec<StepJson<'a>>,
+    enough: Option<Vec<ChangedJson<'a>>>,
+}
+
+/// One step of a story.
+#[derive(Serialize)]
+struct StepJson<'a> {
+    kind: &'static str,
+    needs: Duration,
+    text: &'a str,
+}
+
+/// One change of the source.
+#[derive(Serialize)]
+pub(crate) struct ChangedJson<'a> {
+    what: &'a str,
+    title: &'a str,
+    #[serde(flatten)]
+    place: SpotJson<'a>,
+    from: Option<Duration>,
+    to: Option<Duration>,
+    applicable: bool,
+}
+
+/// Where something is written.
+#[derive(Serialize)]
+pub(crate) struct SpotJson<'a> {
+    file: Option<&'a str>,
+    span: Option<SpanJson>,
+}
+
+impl<'a> SpotJson<'a> {
+    pub(crate) fn new(span: Span, reporter: &'a Reporter<'_>) -> SpotJson<'a> {
+        let there = reporter.span_json(span);
+        SpotJson { file: there.is_some().then(|| reporter.name(span)), span: there }
+    }
+}
+
+impl<'a> ChangedJson<'a> {
+    pub(crate) fn new(change: &'a Changed, reporter: &'a Reporter<'_>) -> ChangedJson<'a> {
+        let finite = |bound: Option<Bound>| bound.and_then(Bound::finite);
+        ChangedJson {
+            what: &change.what,
+            title: &change.title,
+            place: SpotJson::new(change.place, reporter),
+            from: finite(change.amounts.map(|(from, _)| from)),
+            to: finite(change.amounts.map(|(_, to)| to)),
+            applicable: change.is_editable(),
+        }
+    }
+}
+
+impl<'a> ConflictJson<'a> {
+    pub(crate) fn new(
+        told: &'a Told,
+        network: &Network,
+        input: &Input,
+        reporter: &'a Reporter<'_>,
+    ) -> ConflictJson<'a> {
+        let Told { conflict, story, enough, .. } = told;
+        let step = |Said { part, needs, text }: &'a Said| StepJson { kind: kind(*part), needs: *needs, text };
+        let changed = |change: &'a Changed| ChangedJson::new(change, reporter);
+        ConflictJson {
+            members: members(conflict, network, input, reporter),
+            total: conflict.total,
+            conservative: conflict.conservative,
+            story: story.iter().map(step).collect(),
+            enough: enough.as_ref().map(|enough| enough.iter().map(changed).collect()),
+        }
+    }
+}
+
+/// What a bound is called.
+fn kind(part: Part) -> &'static str {
+    match part {
+        Part::RequirementUpper(_) => "requirement-upper",
+        Part::RequirementLower(_) => "requirement-lower",
+        Part::LinkLower(_) => "contingent-lower",
+        Part::LinkUpper(_) => "contingent-upper",
+        Part::DelayMin(_) => "delay-min",
+        Part::DelayMax(_) => "delay-max",
+        Part::AfterOrigin => "after-origin",
+        Part::Join(_) => "join",
+    }
 }
 
 /// The members of a conflict for programs.
-pub(crate) fn to_json(
+pub(crate) fn members(
     conflict: &Conflict,
     network: &Network,
     input: &Input,
@@ -25,24 +130,20 @@ pub(crate) fn to_json(
         .members
         .iter()
         .map(|share| {
-            let (kind, ends, index) = match share.part {
-                Part::RequirementUpper(index) => {
-                    ("requirement-upper", requirement_ends(network, index), Some(index))
+            let (ends, index) = match share.part {
+                Part::RequirementUpper(index) | Part::RequirementLower(index) | Part::Join(index) => {
+                    (requirement_ends(network, index), Some(index))
                 }
-                Part::RequirementLower(index) => {
-                    ("requirement-lower", requirement_ends(network, index), Some(index))
-                }
-                Part::LinkLower(index) => ("contingent-lower", link_ends(network, index), Some(index)),
-                Part::LinkUpper(index) => ("contingent-upper", link_ends(network, index), Some(index)),
-                Part::DelayMin(index) => ("delay-min", link_ends(network, index), Some(index)),
-                Part::DelayMax(index) => ("delay-max", link_ends(network, index), Some(index)),
-                Part::AfterOrigin => ("after-origin", None, None),
-                Part::Join(index) => ("join", requirement_ends(network, index), Some(index)),
+                Part::LinkLower(index)
+                | Part::LinkUpper(index)
+                | Part::DelayMin(index)
+                | Part::DelayMax(index) => (link_ends(network, index), Some(index)),
+                Part::AfterOrigin => (None, None),
             };
             let origin = input.origins().and_then(|origins| origins.constraint(share.part));
             let (from, to) = ends.unzip();
             MemberJson {
-                kind,
+                kind: kind(share.part),
                 index,
                 from,
                 to,

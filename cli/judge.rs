@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use kirk_compiler::{Code, Diagnostic, Span};
+use kirk_compiler::{Code, Diagnostic, Span, Told};
 use kirk_network::assume::{Assumed, Assumption, check_assuming};
 use kirk_network::merge::merge;
 use kirk_network::stnu::TooLarge;
@@ -10,13 +10,15 @@ use kirk_network::{Conflict, Network, Verdict};
 use serde::Serialize;
 
 use crate::args::Delays;
-use crate::conflict::{self, MemberJson};
+use crate::conflict::{ConflictJson, MemberJson, members, told};
 use crate::input::Input;
 use crate::report::{DiagnosticJson, Reporter};
 
 /// The verdict on a network and how long it took.
 pub(crate) struct Judged {
     pub(crate) conflict: Option<Conflict>,
+    /// All of them, each as it is told.
+    told: Vec<Told>,
     seconds: f64,
     pub(crate) merged: Network,
     /// What the conflict speaks of, if not the network of the input: the same with other delays.
@@ -48,14 +50,17 @@ pub(crate) fn judge_assuming(input: &mut Input, delays: Delays, theory: bool) ->
         }
     };
     let merged = merge(network).network;
-    if conflict.is_some() {
+    let mut all = Vec::new();
+    if let Some(first) = &conflict {
         let judged = assumed.as_ref().unwrap_or(network);
-        for mut diagnostic in conflict::diagnostics(judged, input, theory) {
+        all = told(first, judged, input, (delays.assumption(), theory));
+        for told in &all {
+            let mut diagnostic = told.diagnostic.clone();
             diagnostic.message.push_str(delays.words());
             input.diagnostics.push(diagnostic);
         }
     }
-    Some(Judged { conflict, seconds, merged, assumed })
+    Some(Judged { conflict, told: all, seconds, merged, assumed })
 }
 
 impl Delays {
@@ -108,7 +113,8 @@ pub(crate) struct CheckJson<'a> {
     #[serde(flatten)]
     pub(crate) verdict: VerdictJson,
     diagnostics: Vec<DiagnosticJson<'a>>,
-    pub(crate) conflict: Vec<MemberJson>,
+    conflict: Vec<MemberJson>,
+    pub(crate) conflicts: Vec<ConflictJson<'a>>,
 }
 
 /// What was decided, of what, and how long that took.
@@ -128,14 +134,15 @@ impl<'a> CheckJson<'a> {
     pub(crate) fn new(
         file: &'a str,
         input: &'a Input,
-        judged: Option<&Judged>,
+        judged: Option<&'a Judged>,
         delays: Delays,
-        reporter: &Reporter<'_>,
+        reporter: &'a Reporter<'_>,
     ) -> CheckJson<'a> {
         let conflict = judged.and_then(|judged| judged.conflict.as_ref());
         let merged = judged.map(|judged| &judged.merged);
         let assumed = judged.and_then(|judged| judged.assumed.as_ref());
         let network = assumed.or(input.network.as_ref());
+        let all = judged.iter().flat_map(|judged| &judged.told);
         CheckJson {
             format: "kirk-check/1",
             file,
@@ -150,8 +157,12 @@ impl<'a> CheckJson<'a> {
             },
             diagnostics: input.diagnostics.iter().map(|d| reporter.to_json(d)).collect(),
             conflict: match (conflict, network) {
-                (Some(conflict), Some(network)) => conflict::to_json(conflict, network, input, reporter),
+                (Some(conflict), Some(network)) => members(conflict, network, input, reporter),
                 _ => Vec::new(),
+            },
+            conflicts: match network {
+                Some(network) => all.map(|told| ConflictJson::new(told, network, input, reporter)).collect(),
+                None => Vec::new(),
             },
         }
     }

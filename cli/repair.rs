@@ -5,20 +5,21 @@ use std::io;
 
 use kirk_compiler::nearest::nearest;
 use kirk_compiler::repair::{Changed, Preference, Proposal, Proposals, Wishes, names, proposals};
-use kirk_compiler::{Edit, Source, Span, Text};
+use kirk_compiler::{Edit, Source, Text};
 use kirk_network::stnu::TooLarge;
-use kirk_network::{Bound, Duration, Verdict, check};
+use kirk_network::{Duration, Verdict, check};
 use serde::Serialize;
 use similar::TextDiff;
 
 use crate::args::{Common, Prefer, RepairOf, TextOrJson};
+use crate::conflict::{ChangedJson, SpotJson};
 use crate::foreign::one_line;
 use crate::input::{Input, load_all, without_mark};
 use crate::json::line;
 use crate::judge::too_large;
 use crate::output::{Status, complain, print, print_line, remark};
 use crate::replace::Replacement;
-use crate::report::{Reporter, SpanJson};
+use crate::report::Reporter;
 
 pub(crate) fn repair_of(arguments: &RepairOf, common: &Common) -> io::Result<Status> {
     let mut input = load_all(&arguments.files, &arguments.selection);
@@ -127,10 +128,10 @@ fn drop_unproven(found: &mut Proposals, input: &Input, arguments: &RepairOf) -> 
 
 /// The sources with a proposal made; `None` if it is of what cannot be edited.
 fn edited(proposal: &Proposal, sources: &[Source]) -> Option<Vec<Source>> {
-    let mut edits: Vec<&Edit> = proposal.changes.iter().flat_map(|change| &change.edits).collect();
-    if edits.is_empty() || proposal.changes.iter().any(|change| change.edits.is_empty()) {
+    if !proposal.is_applicable() {
         return None;
     }
+    let mut edits: Vec<&Edit> = proposal.changes.iter().flat_map(|change| &change.edits).collect();
     edits.sort_by_key(|edit| (edit.span.source, edit.span.start));
     let mut sources = sources.to_vec();
     for edit in edits.iter().rev() {
@@ -156,9 +157,9 @@ fn edit(arguments: &RepairOf, input: &Input, found: Option<&Proposals>) -> io::R
         return refuse(&format!("there is no proposal {number}: {there}"));
     };
     let Some(sources) = edited(proposal, &input.sources) else {
-        return refuse(
-            "amounts of this format cannot be edited by kirk: change them where the proposal says",
-        );
+        return refuse(&format!(
+            "kirk cannot write proposal {number} in the file: make it by hand, where the proposal says"
+        ));
     };
     let changed = input.sources.iter().zip(&sources).filter(|(before, after)| before.text != after.text);
     if arguments.diff {
@@ -244,6 +245,9 @@ fn lines(
             let place = reporter.at(change.place).map_or(String::new(), |at| format!("  {at}"));
             lines.push(format!("{lead}{}{place}", change.title));
         }
+        if !proposal.is_applicable() {
+            lines.push("     by hand: kirk cannot write this change in the file".to_string());
+        }
     }
     if found.gave_up {
         lines.extend([
@@ -251,16 +255,25 @@ fn lines(
             "The search was given up before its end: there may be cheaper ones.".to_string(),
         ]);
     }
-    let can_edit = |proposal: &Proposal| proposal.changes.iter().all(|change| !change.edits.is_empty());
-    if found.proposals.iter().any(can_edit) {
+    if let Some(first) = found.proposals.iter().position(Proposal::is_applicable) {
         lines.push(String::new());
-        lines.push(match file {
-            "-" => "With `--diff` the first is printed as a patch.".to_string(),
-            _ => "With `--apply 1` the first of them is made, with `--diff` it is printed as a patch."
-                .to_string(),
-        });
+        lines.push(how_to_make(file, first + 1));
     }
     lines
+}
+
+/// How the first proposal that can be made is made.
+fn how_to_make(file: &str, number: usize) -> String {
+    match (file, number) {
+        ("-", 1) => "With `--diff` the first is printed as a patch.".to_string(),
+        ("-", _) => format!("With `--diff --apply {number}` number {number} is printed as a patch."),
+        (_, 1) => {
+            "With `--apply 1` the first of them is made, with `--diff` it is printed as a patch.".to_string()
+        }
+        _ => format!(
+            "With `--apply {number}` number {number} is made, with `--diff` as well it is printed as a patch."
+        ),
+    }
 }
 
 #[derive(Serialize)]
@@ -279,16 +292,8 @@ struct ProposalJson<'a> {
     total: Duration,
     changes: Vec<ChangedJson<'a>>,
     proven: bool,
-}
-
-#[derive(Serialize)]
-struct ChangedJson<'a> {
-    what: &'a str,
-    title: &'a str,
-    #[serde(flatten)]
-    place: SpotJson<'a>,
-    from: Option<Duration>,
-    to: Option<Duration>,
+    /// Whether `--apply` can make it.
+    applicable: bool,
 }
 
 #[derive(Serialize)]
@@ -298,26 +303,8 @@ struct PlaceJson<'a> {
     place: SpotJson<'a>,
 }
 
-#[derive(Serialize)]
-struct SpotJson<'a> {
-    file: Option<&'a str>,
-    span: Option<SpanJson>,
-}
-
 impl<'a> RepairJson<'a> {
     fn new(file: &'a str, found: Option<&'a Proposals>, reporter: &'a Reporter<'_>) -> RepairJson<'a> {
-        let spot = |span: Span| SpotJson {
-            file: reporter.span_json(span).map(|_| reporter.name(span)),
-            span: reporter.span_json(span),
-        };
-        let finite = |bound: Option<Bound>| bound.and_then(Bound::finite);
-        let changed = |change: &'a Changed| ChangedJson {
-            what: &change.what,
-            title: &change.title,
-            place: spot(change.place),
-            from: finite(change.amounts.map(|(from, _)| from)),
-            to: finite(change.amounts.map(|(_, to)| to)),
-        };
         let by = |change: &Changed| {
             let (from, to) = change.amounts?;
             Some(to.finite()?.checked_sub(from.finite()?)?.abs())
@@ -328,8 +315,9 @@ impl<'a> RepairJson<'a> {
         };
         let repairs = found.iter().flat_map(|found| &found.proposals).map(|proposal| ProposalJson {
             total: total(proposal),
-            changes: proposal.changes.iter().map(changed).collect(),
+            changes: proposal.changes.iter().map(|change| ChangedJson::new(change, reporter)).collect(),
             proven: true,
+            applicable: proposal.is_applicable(),
         });
         let not_alone = found.iter().flat_map(|found| &found.not_alone);
         RepairJson {
@@ -337,7 +325,9 @@ impl<'a> RepairJson<'a> {
             file,
             controllable: Some(found.is_none()),
             repairs: repairs.collect(),
-            not_alone: not_alone.map(|(what, span)| PlaceJson { what, place: spot(*span) }).collect(),
+            not_alone: not_alone
+                .map(|(what, span)| PlaceJson { what, place: SpotJson::new(*span, reporter) })
+                .collect(),
             gave_up: found.is_some_and(|found| found.gave_up),
         }
     }

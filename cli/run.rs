@@ -4,6 +4,7 @@ use std::fmt;
 use std::io;
 
 use kirk_compiler::{Code, Diagnostic, Severity, Source, Span};
+use kirk_network::assume::Assumption;
 use kirk_network::json::{ReadProblem, parse};
 use kirk_network::{Duration, EventId, Network, Time};
 use kirk_runtime::execution::FORMAT;
@@ -38,11 +39,11 @@ pub(crate) fn run(arguments: &Run, common: &Common) -> io::Result<Status> {
             input.diagnostics.push(too_large());
             None
         }
-        Some(Err(NoPlan::Uncontrollable(_))) => Some(Err(())),
+        Some(Err(NoPlan::Uncontrollable(conflict))) => Some(Err(conflict)),
     };
-    if let (Some(Err(())), Some(network)) = (&plan, &input.network) {
-        let told = conflict::diagnostics(network, &input, false);
-        input.diagnostics.extend(told);
+    if let (Some(Err(conflict)), Some(network)) = (&plan, &input.network) {
+        let told = conflict::told(conflict, network, &input, (Assumption::AsWritten, false));
+        input.diagnostics.extend(told.into_iter().map(|told| told.diagnostic));
     }
     let reported = |diagnostic: &Diagnostic| match arguments.format {
         // Nothing but the execution goes to standard output, and nobody looks at notes beside JSON.

@@ -33,6 +33,7 @@ impl Log {
                 "properties": &checked.verdict,
             }));
         }
+        let mut conflicts = checked.conflicts.iter();
         for diagnostic in &input.diagnostics {
             let rule = self.rule(diagnostic.code);
             let place = |span: kirk_compiler::Span, message: &str| {
@@ -71,8 +72,11 @@ impl Log {
                 let fix = |suggestion: &Suggestion| fix(suggestion, first, input, reporter);
                 result["fixes"] = diagnostic.suggestions.iter().map(fix).collect();
             }
-            if diagnostic.code == Code::NotControllable {
-                result["properties"] = json!({"conflict": &checked.conflict});
+            // Each has a diagnostic of its own, in the same order.
+            if diagnostic.code == Code::NotControllable
+                && let Some(conflict) = conflicts.next()
+            {
+                result["properties"] = json!({"conflict": &conflict.members});
             }
             self.results.push(result);
         }

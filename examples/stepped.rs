@@ -17,7 +17,7 @@ fn main() -> Result<(), String> {
     let plan = match Plan::new(&mission.network) {
         Ok(plan) => plan,
         Err(NoPlan::Uncontrollable(conflict)) => {
-            return Err(Explain::of(&mission, &sources).one(&conflict).message);
+            return Err(Explain::of(&mission, &sources).one(&conflict).diagnostic.message);
         }
         Err(NoPlan::TooLarge) => return Err("the durations add up to too much".to_string()),
     };

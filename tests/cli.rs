@@ -530,6 +530,7 @@ fn what_could_not_be_decided_is_null() {
     let fields: Vec<&str> = said.as_object().unwrap().keys().map(String::as_str).collect();
     let promised = [
         "conflict",
+        "conflicts",
         "conservative",
         "contingents",
         "controllable",

@@ -167,6 +167,32 @@ fn a_network_file_is_repaired_where_its_numbers_stand() {
 }
 
 #[test]
+fn what_kirk_cannot_write_is_said_to_be_to_be_made_by_hand() {
+    let file = "tests/networks/lane50_notDC_000.stnu";
+    let told = stdout(&kirk(&["repair", file]));
+    assert!(told.contains("     by hand: kirk cannot write this change in the file\n"), "{told}");
+    assert!(!told.contains("--apply"), "{told}");
+    let applied = kirk(&["repair", file, "--apply", "1"]);
+    assert_eq!(applied.status.code(), Some(2));
+    assert!(stderr(&applied).contains("kirk cannot write proposal 1 in the file"), "{}", stderr(&applied));
+    let applicable = |path: &str| -> Vec<bool> {
+        let document: Value =
+            serde_json::from_str(&stdout(&kirk(&["repair", path, "--format", "json"]))).unwrap();
+        let all = document["repairs"].as_array().unwrap().iter();
+        let of = |repair: &Value| {
+            let changes = repair["changes"].as_array().unwrap().iter();
+            let each = changes.map(|change| change["applicable"].as_bool().unwrap()).min();
+            assert_eq!(each, repair["applicable"].as_bool(), "{repair}");
+            each.unwrap()
+        };
+        all.map(of).collect()
+    };
+    let (by_hand, by_kirk) = (applicable(file), applicable("tests/networks/lane50_notDC_000.json"));
+    assert!(!by_hand.is_empty() && !by_hand.contains(&true));
+    assert!(!by_kirk.is_empty() && !by_kirk.contains(&false));
+}
+
+#[test]
 fn wrong_wishes_are_refused_and_nothing_is_changed() {
     let file = "tests/rmpl/gallery/deadline.rmpl";
     let before = fs::read_to_string(file).unwrap();

@@ -98,6 +98,79 @@ fn what_puts_a_problem_right_is_a_fix() {
     assert_eq!(checked["diagnostics"][0]["suggestions"], json!([suggestion]));
 }
 
+/// Two conflicts that have no bound in common: one of ours, and one of ours with Nature.
+const TWICE: &str = "(define-control-program heat ()
+  (declare (primitive) (duration (simple :lower-bound 10 :upper-bound 20))))
+(define-control-program cool ()
+  (declare (primitive) (duration (simple :lower-bound 5 :upper-bound 9) :contingent t)))
+(define-control-program main ()
+  (sequence (:slack t)
+    (with-temporal-constraint (simple-temporal :upper-bound 8) (heat))
+    (with-temporal-constraint (simple-temporal :upper-bound 7) (cool))))
+";
+
+#[test]
+fn every_conflict_is_told_to_programs_with_all_that_people_are_told() {
+    let output = kirk_with_input(&["check", "--format", "json", "-"], TWICE.as_bytes());
+    assert_eq!(output.status.code(), Some(1));
+    let checked: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let conflicts = checked["conflicts"].as_array().unwrap();
+    let said: Vec<&Value> =
+        checked["diagnostics"].as_array().unwrap().iter().filter(|it| it["code"] == "K0601").collect();
+    assert_eq!((conflicts.len(), said.len()), (2, 2));
+    assert!(conflicts.iter().any(|conflict| conflict["members"] == checked["conflict"]));
+    for (conflict, said) in conflicts.iter().zip(said) {
+        let amounts = conflict["members"].as_array().unwrap().iter().map(|it| it["amount"].as_f64().unwrap());
+        assert_eq!(amounts.sum::<f64>(), conflict["total"].as_f64().unwrap());
+        let help = said["help"].as_str().unwrap().replace('\n', " ");
+        for step in conflict["story"].as_array().unwrap() {
+            assert!(help.contains(step["text"].as_str().unwrap()), "{step}: {help}");
+        }
+        let needs = conflict["story"].as_array().unwrap().iter().map(|it| it["needs"].as_f64().unwrap());
+        assert_eq!(needs.sum::<f64>(), -conflict["total"].as_f64().unwrap());
+        let enough = conflict["enough"].as_array().unwrap();
+        assert!(enough.iter().all(|it| help.contains(it["title"].as_str().unwrap())), "{help}");
+        assert_eq!(enough.len(), said["suggestions"].as_array().unwrap().len());
+    }
+    let amounts = |at: usize| {
+        let enough = conflicts[at]["enough"].as_array().unwrap();
+        enough.iter().map(|it| (it["from"].as_f64(), it["to"].as_f64())).collect::<Vec<_>>()
+    };
+    let heat = usize::from(amounts(0).len() == 1);
+    assert_eq!(amounts(heat), [(Some(8.0), Some(10.0)), (Some(10.0), Some(8.0))]);
+    assert_eq!(amounts(1 - heat), [(Some(7.0), Some(9.0))]);
+
+    let output = kirk_with_input(&["check", "--format", "sarif", "-"], TWICE.as_bytes());
+    let log: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let results = log["runs"][0]["results"].as_array().unwrap();
+    let results: Vec<&Value> = results.iter().filter(|it| it["ruleId"] == "K0601").collect();
+    assert_eq!(results.len(), 2);
+    for (result, conflict) in results.iter().zip(conflicts) {
+        assert_eq!(result["properties"]["conflict"], conflict["members"]);
+    }
+}
+
+#[test]
+fn a_no_that_only_an_assumption_makes_is_explained_too() {
+    // `c` could come 5 s after `b` in time, were it known which part of the lateness is the duration's and which the news'.
+    let network = r#"{"format": "kirk-network/1", "origin": "a", "events": ["a", "b", "c"],
+        "requirements": [{"from": "b", "to": "c", "lower": 5, "upper": 10}, {"from": "a", "to": "c", "lower": 0, "upper": 25}],
+        "contingents": [{"from": "a", "to": "b", "lower": 5, "upper": 20, "delay": [0, 5]}]}"#;
+    let arguments = ["check", "--format", "json", "--delays", "elongated", "-"];
+    let output = kirk_with_input(&arguments, network.as_bytes());
+    assert_eq!(output.status.code(), Some(1));
+    let checked: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(checked["diagnostics"].as_array().unwrap().len(), 1, "{checked}");
+    let said = &checked["diagnostics"][0];
+    assert!(
+        said["message"].as_str().unwrap().ends_with("if durations and delays are one uncertainty"),
+        "{said}"
+    );
+    assert!(said["help"].as_str().unwrap().contains("That needs 30 s, and 25 s are there."), "{said}");
+    let conflicts = checked["conflicts"].as_array().unwrap();
+    assert_eq!((&conflicts[0]["members"], &conflicts[0]["enough"]), (&checked["conflict"], &Value::Null));
+}
+
 #[test]
 fn the_exit_status_is_that_of_a_check() {
     assert_eq!(log(&["examples/rmpl/eat-and-bike.rmpl"]).1, Some(0));

@@ -3,17 +3,19 @@
 mod amounts;
 mod story;
 
+pub use story::Said;
+
 use kirk_network::conflicts::{conflicts, without};
 use kirk_network::stnu::TooLarge;
 use kirk_network::{Conflict, Duration, Network, Part, Requirement, Share};
 
 use crate::code::Code;
-use crate::diagnostic::{Diagnostic, Suggestion};
+use crate::diagnostic::Diagnostic;
 use crate::lower::Lowered;
 use crate::origins::{Origin, OriginKind, Origins, Side};
-use crate::repair::amount as amount_in;
+use crate::repair::{Changed, amount as amount_in};
 use crate::source::{Source, Span};
-use story::{story, wrapped};
+use story::{lines, steps, wrapped};
 
 /// What the joins of a `parallel` come to where Nature has no say.
 const JOINED: &str = "joined here: without slack, all parts start together and end together";
@@ -51,6 +53,19 @@ pub struct Explain<'a> {
     pub theory: bool,
 }
 
+/// A conflict, and all there is to say about it.
+#[derive(Clone, Debug)]
+pub struct Told {
+    /// Its indices are those of the network that was explained.
+    pub conflict: Conflict,
+    /// In words and places.
+    pub diagnostic: Diagnostic,
+    /// Step by step, from event to event; nothing if the walk would be too long to tell anything.
+    pub story: Vec<Said>,
+    /// The changes of one amount each that settle it, each alone; `None` if the mission is too large to look for them.
+    pub enough: Option<Vec<Changed>>,
+}
+
 impl<'a> Explain<'a> {
     /// Of a program that was compiled from these sources.
     pub fn of(lowered: &'a Lowered, sources: &'a [Source]) -> Explain<'a> {
@@ -63,36 +78,46 @@ impl<'a> Explain<'a> {
     ///
     /// # Errors
     /// [`TooLarge`] if the durations add up to more than 64-bit microseconds can hold.
-    pub fn all(&self) -> Result<Vec<Diagnostic>, TooLarge> {
+    pub fn each(&self) -> Result<Vec<Told>, TooLarge> {
         // Each costs a verdict: of large missions no more are looked for than are told.
         let counted = if self.network.events().len() > LARGE { MOST + 1 } else { COUNTED };
         let found = conflicts(self.network, counted)?;
         let told = found.len().min(MOST);
-        let mut diagnostics = Vec::new();
+        let mut all = Vec::new();
         for (index, conflict) in found.iter().take(MOST).enumerate() {
             // What settles one is seen when the others are out of the way.
             let others = found.iter().enumerate().filter(|(other, _)| *other != index);
             let rest = without(self.network, others.map(|(_, other)| other));
-            diagnostics.push(self.told(conflict, &rest, found.len() > 1));
+            let enough = amounts::enough_alone(conflict, self.network, &rest, self.origins, self.sources);
+            all.push(self.told(conflict, enough, found.len() > 1));
         }
         if found.len() > told {
             let more = found.len() - told;
             let least = if found.len() == counted { "at least " } else { "" };
             let text = format!("{least}{more} more conflicts are not shown.");
-            if let Some(last) = diagnostics.last_mut() {
+            if let Some(Told { diagnostic: last, .. }) = all.last_mut() {
                 last.help = Some(last.help.take().map_or(text.clone(), |help| format!("{help}\n{text}")));
             }
         }
-        Ok(diagnostics)
+        Ok(all)
     }
 
-    /// One conflict of it. Its indices are those of the network.
-    pub fn one(&self, conflict: &Conflict) -> Diagnostic {
-        self.told(conflict, self.network, false)
+    /// The same, of each no more than its diagnostic.
+    ///
+    /// # Errors
+    /// [`TooLarge`] if the durations add up to more than 64-bit microseconds can hold.
+    pub fn all(&self) -> Result<Vec<Diagnostic>, TooLarge> {
+        Ok(self.each()?.into_iter().map(|told| told.diagnostic).collect())
     }
 
-    /// Words a conflict; `rest` is the network with the other conflicts out of the way.
-    fn told(&self, conflict: &Conflict, rest: &Network, is_one_of_several: bool) -> Diagnostic {
+    /// One conflict of it, or of what it is under an assumption. Its indices are those of the network. What would settle it is not
+    /// looked for.
+    pub fn one(&self, conflict: &Conflict) -> Told {
+        self.told(conflict, None, false)
+    }
+
+    /// Words a conflict that these changes settle, each alone.
+    fn told(&self, conflict: &Conflict, enough: Option<Vec<Changed>>, is_one_of_several: bool) -> Told {
         let Explain { network, origins, sources, program, theory } = *self;
         let mut places: Vec<(Span, Vec<String>)> = Vec::new();
         for share in &conflict.members {
@@ -119,18 +144,19 @@ impl<'a> Explain<'a> {
         };
         let problem = Diagnostic::error(Code::NotControllable, span, message).primary(primary);
         let problem = told.fold(problem, |problem, (span, text)| problem.label(span, text));
-        let mut help = story(conflict, network, origins, sources).unwrap_or_default();
+        let story = steps(conflict, network, origins, sources).unwrap_or_default();
+        let mut help = lines(conflict, &story);
         if theory {
             help.extend(wrapped("", &format!("The time they leave: {} < 0.", total(conflict))));
         }
-        let enough = amounts::enough_alone(conflict, network, rest, origins, sources);
         help.extend(advice(conflict, network, origins, enough.as_deref(), is_one_of_several));
         if conflict.conservative {
             help.extend(wrapped("", CONSERVATIVE));
         }
-        let suggestions = enough.into_iter().flatten().map(|(_, suggestion)| suggestion);
-        let problem = Diagnostic { suggestions: suggestions.flatten().collect(), ..problem };
-        if help.is_empty() { problem } else { problem.help(help.join("\n")) }
+        let suggestions = enough.iter().flatten().filter_map(Changed::suggestion).collect();
+        let problem = Diagnostic { suggestions, ..problem };
+        let diagnostic = if help.is_empty() { problem } else { problem.help(help.join("\n")) };
+        Told { conflict: conflict.clone(), diagnostic, story, enough }
     }
 }
 
@@ -172,7 +198,7 @@ fn advice(
     conflict: &Conflict,
     network: &Network,
     origins: &Origins,
-    enough: Option<&[(String, Option<Suggestion>)]>,
+    enough: Option<&[Changed]>,
     is_one_of_several: bool,
 ) -> Vec<String> {
     let has = |wanted: &dyn Fn(Part) -> bool| conflict.members.iter().any(|share| wanted(share.part));
@@ -211,10 +237,10 @@ fn advice(
     match enough {
         Some([]) if is_circle(conflict) => lines.extend(wrapped("", CIRCLE)),
         Some([]) => lines.extend(wrapped("", NOT_ALONE)),
-        Some([(one, _)]) => lines.extend(wrapped("", &format!("This alone {settles}: {one}."))),
+        Some([one]) => lines.extend(wrapped("", &format!("This alone {settles}: {}.", one.title))),
         Some(several) => {
             lines.push(format!("Each of these alone {settles}:"));
-            several.iter().for_each(|(one, _)| lines.extend(wrapped("- ", one)));
+            several.iter().for_each(|one| lines.extend(wrapped("- ", &one.title)));
         }
         None => {}
     }

@@ -78,6 +78,26 @@ pub struct Changed {
     pub edits: Vec<Edit>,
 }
 
+impl Changed {
+    /// The change of the source, if it can be made there.
+    pub(crate) fn suggestion(&self) -> Option<Suggestion> {
+        let Changed { title, edits, .. } = self;
+        self.is_editable().then(|| Suggestion { title: title.clone(), edits: edits.clone() })
+    }
+
+    /// True if it can be made in the source.
+    pub fn is_editable(&self) -> bool {
+        !self.edits.is_empty()
+    }
+}
+
+impl Proposal {
+    /// True if it can be made in the source: each of its changes can be.
+    pub fn is_applicable(&self) -> bool {
+        self.changes.iter().all(Changed::is_editable)
+    }
+}
+
 /// What was found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Proposals {
@@ -160,22 +180,27 @@ pub(crate) fn amount(amount: Duration, place: Span, sources: &[Source]) -> Strin
     edit::unit(place, sources).say(amount)
 }
 
-/// A change in words, and what it is in the source if it can be made there.
+/// A change in words, and as what it is in the source if it can be made there.
 pub(crate) fn change_of_source(
     change: &Change,
     network: &Network,
     origins: &Origins,
     sources: &[Source],
-) -> Option<(String, Option<Suggestion>)> {
+) -> Option<Changed> {
     let part = change.knob.parts()[0];
     let (origin, side) = origins.of(part)?;
-    let title = title(change, origin, edit::unit(origin.place(side), sources));
+    let place = origin.place(side);
     let edits = match is_changeable(part, network, origin, sources) {
         true => edit::edits(change, network, origin, sources),
         false => Vec::new(),
     };
-    let suggestion = (!edits.is_empty()).then(|| Suggestion { title: title.clone(), edits });
-    Some((title, suggestion))
+    Some(Changed {
+        title: title(change, origin, edit::unit(place, sources)),
+        what: what(part, origin)?,
+        place,
+        amounts: Some((change.from, change.to)),
+        edits,
+    })
 }
 
 /// All names by which bounds can be kept or weighed.

@@ -6,16 +6,15 @@ use kirk_network::least::{could_settle, least_changes};
 use kirk_network::vary::{Change, Knob};
 use kirk_network::{Conflict, Network, Part};
 
-use crate::diagnostic::Suggestion;
 use crate::origins::{Origin, Origins};
-use crate::repair::change_of_source;
+use crate::repair::{Changed, change_of_source};
 use crate::source::Source;
 use crate::written::{Written, written};
 
 /// Each value is found by asking for the verdict again and again: of large missions that would keep the reader waiting.
 const LARGE: usize = 20_000;
 
-/// In words and as a change of the source, every amount with the least change that alone makes the program controllable: what is
+/// As a change of the source, every amount with the least change that alone makes the program controllable: what is
 /// ours and the news, and only if none of that is enough, what Nature decides. `rest` is the network with other conflicts out of the way. `None` if the
 /// mission is too large to look.
 pub(super) fn enough_alone(
@@ -24,7 +23,7 @@ pub(super) fn enough_alone(
     rest: &Network,
     origins: &Origins,
     sources: &[Source],
-) -> Option<Vec<(String, Option<Suggestion>)>> {
+) -> Option<Vec<Changed>> {
     let parts = could_settle(network, conflict);
     if parts.len() * network.events().len() > LARGE {
         return None;

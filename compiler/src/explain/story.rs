@@ -11,39 +11,56 @@ use crate::source::Source;
 /// No line of a story is longer: with what a terminal shows before it, it fits 80 columns.
 const WIDTH: usize = 74;
 
-/// The story, in numbered lines; `None` if the walk would be too long to tell anything.
-pub(super) fn story(
+/// A step of a story.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Said {
+    /// The bound by which it leads on.
+    pub part: Part,
+    /// What is needed for it; negative where so much is there.
+    pub needs: Duration,
+    /// In words.
+    pub text: String,
+}
+
+/// The story; `None` if the walk would be too long to tell anything. What takes no time is left out, but in a circle.
+pub(super) fn steps(
     conflict: &Conflict,
     network: &Network,
     origins: &Origins,
     sources: &[Source],
-) -> Option<Vec<String>> {
+) -> Option<Vec<Said>> {
     let mut steps = walk(network, conflict)?;
     begin_with_a_need(&mut steps);
     let is_circle = is_circle(conflict);
-    let needed = sum(steps.iter().map(|step| step.needs).filter(|needs| *needs > Duration::ZERO));
-    let there = -sum(steps.iter().map(|step| step.needs).filter(|needs| *needs < Duration::ZERO));
-    let told = steps.iter().filter(|step| is_circle || step.needs != Duration::ZERO);
-    let mut texts: Vec<String> = Vec::new();
-    for step in told {
+    let mut told: Vec<Said> = Vec::new();
+    for step in steps.iter().filter(|step| is_circle || step.needs != Duration::ZERO) {
         // There is a "but" only to what was said before.
-        let but = if texts.is_empty() { "" } else { "but " };
-        texts.extend(say(step, origins, sources, but));
+        let but = if told.is_empty() { "" } else { "but " };
+        let said = |text| Said { part: step.part, needs: step.needs, text };
+        told.extend(say(step, origins, sources, but).map(said));
     }
-    if texts.is_empty() {
-        return None;
+    Some(told)
+}
+
+/// The story in numbered lines.
+pub(super) fn lines(conflict: &Conflict, story: &[Said]) -> Vec<String> {
+    if story.is_empty() {
+        return Vec::new();
     }
+    let is_circle = is_circle(conflict);
     let mut lines = vec![match is_circle {
         true => "Each of these comes after the one before, and the first after the last:".to_string(),
         false => "Step by step:".to_string(),
     }];
-    for (number, text) in texts.iter().enumerate() {
+    for (number, Said { text, .. }) in story.iter().enumerate() {
         lines.extend(wrapped(&format!("{:>2}. ", number + 1), text));
     }
     if !is_circle {
+        let needed = sum(story.iter().map(|step| step.needs).filter(|needs| *needs > Duration::ZERO));
+        let there = -sum(story.iter().map(|step| step.needs).filter(|needs| *needs < Duration::ZERO));
         lines.push(format!("That needs {needed} s, and {there} s are there."));
     }
-    Some(lines)
+    lines
 }
 
 /// What is needed comes first, and what is there for it after that.

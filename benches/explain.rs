@@ -4,13 +4,16 @@
 
 use std::fs;
 use std::path::Path;
+use std::sync::Arc;
 
 use divan::{Bencher, black_box};
 use kirk::compiler::repair::{Wishes, proposals};
 use kirk::{Explain, Options, Source, compile};
-use kirk_network::Network;
+use kirk_lsp::{Shift, View, analyse, hover, judge};
+use kirk_network::generate::{Exponential, Lambda, Link, SamplingOptions, controllable, sampling};
 use kirk_network::slack::{bounds, slack};
 use kirk_network::vary::Knob;
+use kirk_network::{Network, rmpl};
 
 fn main() {
     divan::main();
@@ -61,4 +64,24 @@ fn slack_of_every_bound(bencher: Bencher<'_, '_>, name: &str) {
     let network = public(name);
     let knobs: Vec<Knob> = bounds(&network);
     bencher.bench_local(|| slack(black_box(&network), &knobs).unwrap().map(|all| all.len()));
+}
+
+/// The mission of 2,000 lines that `benches/editing.rs` types in.
+fn sampling_mission() -> String {
+    let delay = Exponential { lambda: 0.3, lambda_is: Lambda::Mean };
+    let options = SamplingOptions { scan_delay: delay, message_delay: delay, traverse: Link::Requirement };
+    let (_, network) = controllable(|seed| sampling(4, 26, seed, &options), 0).unwrap().unwrap();
+    rmpl::write(&network)
+}
+
+/// What an editor shows of one activity in a mission of 2,000 lines: the first, one of Nature's, the last.
+#[divan::bench(args = ["(traverse", "(scan", "(message"])]
+fn hover_of_an_activity(bencher: Bencher<'_, '_>, name: &str) {
+    let text = sampling_mission();
+    let (analysis, unjudged) = analyse(text.clone());
+    let (missions, _) = judge(unjudged);
+    let view = View { analysis: Arc::new(analysis), missions: Arc::new(missions), shift: Shift::default() };
+    let offset = text.rfind(name).unwrap() as u32 + 1;
+    assert!(hover(&view, offset).unwrap().markdown.contains("as late as"));
+    bencher.bench_local(|| hover(black_box(&view), offset).map(|hover| hover.markdown.len()));
 }

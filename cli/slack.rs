@@ -4,7 +4,7 @@ use std::io;
 
 use kirk_compiler::episode::Kind;
 use kirk_compiler::repair::what;
-use kirk_compiler::{Origin, OriginKind, Origins, Side, Span, Written, events_of, written};
+use kirk_compiler::{Origins, Side, Span, Written, events_of, measurable};
 use kirk_network::merge::{Merged, merge};
 use kirk_network::promise::{promises, stretch};
 use kirk_network::slack::{Factor, Slack, beyond, common_factor, slack};
@@ -123,7 +123,6 @@ fn measure(network: &Network, input: &Input) -> Result<Option<Left>, TooLarge> {
 
 /// What can be moved: each bound that is written, with what it is. What is written once moves together.
 fn knobs<'a>(network: &Network, origins: &'a Origins) -> Vec<(Knob, String, Written<'a>)> {
-    let is_meant = |part: Part, origin: &Origin| is_by_itself(part, origin) && is_worth_a_line(part, network);
     let knob = |written: Written<'a>| {
         let mut what = what(written.parts[0], written.origin)?;
         if written.parts.len() > 1 {
@@ -131,32 +130,7 @@ fn knobs<'a>(network: &Network, origins: &'a Origins) -> Vec<(Knob, String, Writ
         }
         Some((Knob::together(written.parts.clone())?, what, written))
     };
-    written(network, origins, is_meant).into_iter().filter_map(knob).collect()
-}
-
-/// News that comes at once, or may be early, is nothing to measure unless somebody says so.
-fn is_worth_a_line(part: Part, network: &Network) -> bool {
-    match part {
-        Part::DelayMin(index) => network.contingents()[index].delay.min > Duration::ZERO,
-        _ => true,
-    }
-}
-
-/// True if a bound is written by itself, and not what a form leaves open.
-fn is_by_itself(part: Part, origin: &Origin) -> bool {
-    let is_entry = matches!(origin.kind, OriginKind::Requirement | OriginKind::Link);
-    let is_written = Side::of(part).is_some_and(|side| origin.place(side) != origin.span);
-    is_entry || is_written || matches!(part, Part::LinkUpper(_) | Part::DelayMax(_))
-}
-
-/// A side as the end of a line.
-fn words(side: Side) -> &'static str {
-    match side {
-        Side::Lower => "at least",
-        Side::MaxDelay => "maximum",
-        Side::MinDelay => "minimum",
-        Side::Upper => "at most",
-    }
+    measurable(network, origins).into_iter().filter_map(knob).collect()
 }
 
 /// The activities of ours, with the latest start that can be promised and how long each may be made to take. Of a network, the
@@ -205,8 +179,8 @@ impl Left {
             lines.push(format!(
                 "{room:>12}  {:>10}  {:<22}  {what}, {}{at}",
                 value(slack.value),
-                range(slack),
-                words(*side)
+                slack.range(),
+                side.word()
             ));
         }
         if !self.critical.is_empty() {
@@ -250,16 +224,6 @@ impl Left {
 
 fn value(bound: Bound) -> String {
     bound.finite().map_or("any".to_string(), |bound| format!("{bound} s"))
-}
-
-/// Where the value may lie.
-fn range(slack: &Slack) -> String {
-    match (slack.least.finite(), slack.most.finite()) {
-        (Some(least), Some(most)) => format!("{least} to {most} s"),
-        (Some(least), None) => format!("{least} s or more"),
-        (None, Some(most)) => format!("{most} s or less"),
-        (None, None) => "anything".to_string(),
-    }
 }
 
 /// `kirk-slack/1`. What has no limit is `null`.

@@ -105,7 +105,7 @@ pub use origins::{Origin, OriginKind, Origins, Side, Subject};
 pub use sexpr::to_sexpr;
 pub use source::{LineIndex, Source, Span};
 pub use unfold::{Unfolded, unfold};
-pub use written::{Written, written};
+pub use written::{Written, measurable, written};
 
 /// What to compile of the sources.
 #[derive(Clone, Debug, PartialEq, Eq)]

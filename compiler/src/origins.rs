@@ -83,6 +83,16 @@ pub enum Side {
 }
 
 impl Side {
+    /// It as the end of a sentence about what it bounds.
+    pub fn word(self) -> &'static str {
+        match self {
+            Side::Lower => "at least",
+            Side::MaxDelay => "maximum",
+            Side::MinDelay => "minimum",
+            Side::Upper => "at most",
+        }
+    }
+
     /// `None` for what has no bound.
     pub fn of(part: Part) -> Option<Side> {
         Some(match part {

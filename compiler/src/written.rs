@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use kirk_network::slack::bounds;
 use kirk_network::vary::Knob;
-use kirk_network::{Network, Part};
+use kirk_network::{Duration, Network, Part};
 
-use crate::origins::{Origin, Origins, Side};
+use crate::origins::{Origin, OriginKind, Origins, Side};
 use crate::source::Span;
 
 /// A bound as it is written, with all that is read there.
@@ -27,10 +27,25 @@ impl Written<'_> {
     }
 
     /// True if all that is read there has one value. An argument gives it several, and no one text says them all.
-    pub(crate) fn has_one_value(&self, network: &Network) -> bool {
+    pub fn has_one_value(&self, network: &Network) -> bool {
         let value = |part: &Part| Knob::of(*part).map(|knob| knob.value(network));
         self.parts.iter().all(|part| value(part) == value(&self.parts[0]))
     }
+}
+
+/// Those whose slack is worth a word: what is written by itself, and not what a form leaves open; news that comes at once, or may
+/// be early, only if somebody says so.
+pub fn measurable<'a>(network: &Network, origins: &'a Origins) -> Vec<Written<'a>> {
+    let is_by_itself = |part: Part, origin: &Origin| {
+        let is_entry = matches!(origin.kind, OriginKind::Requirement | OriginKind::Link);
+        let is_written = Side::of(part).is_some_and(|side| origin.place(side) != origin.span);
+        is_entry || is_written || matches!(part, Part::LinkUpper(_) | Part::DelayMax(_))
+    };
+    let is_worth_it = |part: Part| match part {
+        Part::DelayMin(index) => network.contingents()[index].delay.min > Duration::ZERO,
+        _ => true,
+    };
+    written(network, origins, |part, origin| is_by_itself(part, origin) && is_worth_it(part))
 }
 
 /// Those of a network for which something holds, in the order of their places.

@@ -3,9 +3,10 @@
 use kirk_compiler::Span;
 use kirk_compiler::ast::Body;
 use kirk_compiler::episode::Kind;
-use kirk_network::Time;
 use kirk_network::windows::Window;
+use kirk_network::{Bound, Time};
 
+use crate::left::start_of;
 use crate::mission::{Judgement, Mission};
 use crate::view::View;
 
@@ -20,8 +21,13 @@ pub struct Hint {
     pub about: String,
 }
 
-/// The earliest start and the latest end of everything that is called between two offsets.
+/// With more events than this it would take long to say of everything in sight how late it may start.
+const SMALL: usize = 200;
+
+/// The earliest start and the latest end of everything that is called between two offsets; and how late it may start, unless that
+/// would take long: the hover says so of a single one.
 pub fn hints(view: &View, within: Span) -> Vec<Hint> {
+    let events: usize = view.missions.iter().map(|mission| mission.lowered.network.events().len()).sum();
     let mut found = Vec::new();
     let programs = view.analysis.program.programs.iter().filter(|it| view.analysis.is_here(it.span));
     let mut open: Vec<&Body> = programs.flat_map(|program| &program.body).rev().collect();
@@ -31,14 +37,14 @@ pub fn hints(view: &View, within: Span) -> Vec<Hint> {
             continue;
         }
         if matches!(body, Body::Call(_) | Body::Delay(_)) && span.end <= within.end {
-            found.extend(hint(view, span));
+            found.extend(hint(view, span, events <= SMALL));
         }
         open.extend(body.parts().iter().rev());
     }
     found
 }
 
-fn hint(view: &View, span: Span) -> Option<Hint> {
+fn hint(view: &View, span: Span, is_small: bool) -> Option<Hint> {
     let all = view.occurrences(span);
     let windows: Vec<(Window, Window)> = all
         .iter()
@@ -50,14 +56,21 @@ fn hint(view: &View, span: Span) -> Option<Hint> {
         1 => String::new(),
         count => format!("{count}x "),
     };
-    let (label, until) = match latest {
+    let (mut label, until) = match latest {
         Some(latest) => {
             (format!("{count}{earliest}-{latest} s"), format!("ends at {latest} s at the latest"))
         }
         None => (format!("{count}{earliest} s-"), "nothing limits when it ends".to_string()),
     };
     let name = &all.first()?.0.program;
-    let about = format!("starts at {earliest} s at the earliest, {until}, after the start of `{name}`");
+    let mut about = format!("starts at {earliest} s at the earliest, {until}, after the start of `{name}`");
+    if let [(mission, occurrence)] = all[..]
+        && is_small
+        && let Some(Bound::Finite(latest)) = start_of(mission, occurrence)
+    {
+        label.push_str(&format!(", start by {latest} s"));
+        about.push_str(&format!("; it may start as late as {latest} s with all else guaranteed"));
+    }
     Some(Hint { offset: span.end, label, about })
 }
 

@@ -8,7 +8,8 @@ use kirk_network::news::{Treatment, treatments};
 use kirk_network::windows::Window;
 
 use crate::analysis::Analysis;
-use crate::cursor::pointed_at;
+use crate::cursor::{Cursor, pointed_at};
+use crate::left;
 use crate::mission::{Mission, Occurrence};
 use crate::view::View;
 use crate::waits::{Waits, in_words, waits};
@@ -38,19 +39,35 @@ pub fn hover(view: &View, offset: u32) -> Option<Hover> {
         }
         _ => {}
     }
+    parts.extend(bounds(view, place.span));
     parts.retain(|part| !part.is_empty());
     Some(Hover { span: place.span, markdown: parts.join("\n\n") })
 }
 
-/// What there is to know about a word of the language, and when its form happens.
+/// What there is to know about a word of the language, or an amount.
 fn word_at(view: &View, offset: u32) -> Option<Hover> {
     let analysis = &*view.analysis;
     let cursor = pointed_at(analysis.text(), offset)?;
+    // An amount is a number, or a form around it.
+    let amount = [Some(cursor.word), form_around(analysis, cursor.word)].into_iter().flatten();
+    let left = amount.filter_map(|span| Some((span, bounds(view, span)?))).next();
+    match (about_word(view, &cursor), left) {
+        (None, left) => left.map(|(span, markdown)| Hover { span, markdown }),
+        (Some(about), Some((_, left))) if cursor.first => {
+            Some(Hover { span: cursor.word, markdown: format!("{about}\n\n{left}") })
+        }
+        (Some(markdown), _) => Some(Hover { span: cursor.word, markdown }),
+    }
+}
+
+/// What a word of the language means, and when its form happens.
+fn about_word(view: &View, cursor: &Cursor<'_>) -> Option<String> {
+    let analysis = &*view.analysis;
     let written = analysis.slice(cursor.word);
     let Some(word) = word(written).filter(|_| cursor.first) else {
         let name = written.strip_prefix(':')?.to_lowercase();
         let keyword = cursor.keywords().iter().find(|keyword| keyword.name == name)?;
-        return Some(Hover { span: cursor.word, markdown: keyword.about.to_string() });
+        return Some(keyword.about.to_string());
     };
     let mut markdown = format!("```lisp\n{}\n```\n\n{}", word.shape(), word.about);
     // Forms with a body are known by their word, others as a whole.
@@ -58,7 +75,7 @@ fn word_at(view: &View, offset: u32) -> Option<Hover> {
     if let Some(times) = occurrences(view, cursor.word).or_else(whole) {
         markdown.push_str(&format!("\n\n{times}"));
     }
-    Some(Hover { span: cursor.word, markdown })
+    Some(markdown)
 }
 
 /// What a symbol is.
@@ -170,6 +187,26 @@ fn call_around(analysis: &Analysis, name: Span) -> Span {
     around
 }
 
+/// The innermost form in which a word stands.
+fn form_around(analysis: &Analysis, word: Span) -> Option<Span> {
+    let mut around = None;
+    let mut forms = &analysis.forms[..];
+    while let Some(form) = forms
+        .iter()
+        .find(|form| form.span.start <= word.start && word.end <= form.span.end && form.list().is_some())
+    {
+        around = Some(form.span);
+        forms = form.list()?;
+    }
+    around
+}
+
+/// How far the bounds that are written at a place can move.
+fn bounds(view: &View, place: Span) -> Option<String> {
+    let lines: Vec<String> = left::of_bounds(view, place).iter().map(|line| format!("- {line}")).collect();
+    (!lines.is_empty()).then(|| lines.join("\n"))
+}
+
 /// When what stands at a place happens, in each mission it belongs to.
 fn occurrences(view: &View, form: Span) -> Option<String> {
     let all = view.occurrences(form);
@@ -189,7 +226,7 @@ fn occurrences(view: &View, form: Span) -> Option<String> {
     (!lines.is_empty()).then(|| lines.join("\n"))
 }
 
-/// When an occurrence happens; in detail also what it waits for and what becomes of the news of its end.
+/// When an occurrence happens; in detail also how much is left, what it waits for and what becomes of the news of its end.
 fn times(mission: &Mission, occurrence: &Occurrence, detailed: bool) -> Option<String> {
     let network = &mission.lowered.network;
     let (start, end) = (mission.window(occurrence.start)?, mission.window(occurrence.end)?);
@@ -199,13 +236,14 @@ fn times(mission: &Mission, occurrence: &Occurrence, detailed: bool) -> Option<S
     };
     let mut text = format!("- {name} starts {} and ends {}", when(start), when(end));
     let Waits { together, after, link } = waits(network, occurrence.start);
-    match (link, slack(start)) {
-        (Some(_), _) => text.push_str("; Nature decides when it starts"),
-        (None, Some(slack)) => text.push_str(&format!("; its start can shift {slack}")),
-        (None, None) => {}
+    if link.is_some() {
+        text.push_str("; Nature decides when it starts");
     }
     if !detailed {
         return Some(text);
+    }
+    if let Some(left) = left::of_occurrence(mission, occurrence) {
+        text.push_str(&format!("\n- {left}"));
     }
     let listed = |events: &[String]| {
         let shown: Vec<String> = events.iter().take(MOST_OCCURRENCES).map(|event| in_words(event)).collect();
@@ -237,14 +275,5 @@ pub(crate) fn when(window: Window) -> String {
         Some(latest) if latest == window.earliest => format!("at {latest} s"),
         Some(latest) => format!("from {} to {latest} s", window.earliest),
         None => format!("from {} s on", window.earliest),
-    }
-}
-
-/// By how much a start can shift; `None` if it is fixed.
-fn slack(start: Window) -> Option<String> {
-    match start.latest {
-        Some(latest) if latest == start.earliest => None,
-        Some(latest) => latest.checked_since(start.earliest).map(|slack| format!("by {slack} s")),
-        None => Some("without limit".to_string()),
     }
 }

@@ -6,10 +6,11 @@
 //! # Invariants
 //!
 //! - Any text gives an answer to every question at every offset. What is no message is answered with an error.
-//! - The one who answers waits for nobody: reading, writing and judging have threads of their own.
+//! - The one who answers waits for nobody: reading, writing and judging have threads of their own, and so have answers that
+//!   take a while.
 //! - Diagnostics are those of the newest text. If it has errors, there is no verdict; what is shown of windows then is
 //!   that of the last text without.
-//! - Types of the protocol are named in `server`, `requests`, `convert`, `feedback`, `lines` and `document`, not in features.
+//! - Types of the protocol are named in `server`, `errands`, `requests`, `convert`, `feedback`, `lines` and `document`, not in features.
 //!
 //! # Deliberately absent
 //!
@@ -25,12 +26,14 @@ mod convert;
 mod cursor;
 mod definition;
 mod document;
+mod errands;
 mod feedback;
 mod folding;
 mod highlight;
 mod hints;
 mod hover;
 mod layout;
+mod left;
 mod lines;
 mod mission;
 mod outline;

@@ -3,13 +3,15 @@
 mod answers;
 
 use kirk_compiler::Diagnostic;
-use lsp_server::{ErrorCode, Request, Response};
+use lsp_server::{ErrorCode, Request, RequestId, Response};
 use lsp_types::request::{self, *};
 use lsp_types::{TextDocumentPositionParams, Uri};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::convert::Converter;
+use crate::errands::Question;
+use crate::lines::Encoding;
 use crate::server::{Server, key};
 use crate::view::View;
 
@@ -19,11 +21,11 @@ pub(crate) struct Refusal(ErrorCode, String);
 type Params<R> = <R as request::Request>::Params;
 type Answer<R> = Result<<R as request::Request>::Result, Refusal>;
 
-/// Answers a request.
-pub(crate) fn answer(server: &mut Server, request: Request) -> Response {
-    let mut router = Router { server, request, response: None };
+/// Answers a request, or hands it on to be answered later.
+pub(crate) fn answer(server: &mut Server, request: Request) -> Reply {
+    let mut router = Router { server, request, reply: None };
     router
-        .on::<HoverRequest>(answers::hover)
+        .later::<HoverRequest>(answers::hover)
         .on::<GotoDefinition>(answers::definition)
         .on::<References>(answers::references)
         .on::<DocumentHighlightRequest>(answers::occurrences)
@@ -39,11 +41,21 @@ pub(crate) fn answer(server: &mut Server, request: Request) -> Response {
         .on::<ExecuteCommand>(answers::command)
         .on::<FoldingRangeRequest>(answers::folds)
         .on::<SemanticTokensFullRequest>(answers::tokens)
-        .on::<InlayHintRequest>(answers::hints)
+        .later::<InlayHintRequest>(answers::hints)
         .on::<CodeLensRequest>(answers::lenses)
-        .on::<CodeActionRequest>(answers::actions)
+        .later::<CodeActionRequest>(answers::actions)
         .finish()
 }
+
+/// What becomes of a request.
+pub(crate) enum Reply {
+    Now(Response),
+    /// Somebody else has to find it out.
+    Later(Question),
+}
+
+/// How an answer is found without the server.
+type Work<R> = Box<dyn FnOnce() -> Answer<R> + Send>;
 
 fn failed(why: String) -> Refusal {
     Refusal(ErrorCode::RequestFailed, why)
@@ -53,7 +65,7 @@ fn failed(why: String) -> Refusal {
 struct Router<'a> {
     server: &'a mut Server,
     request: Request,
-    response: Option<Response>,
+    reply: Option<Reply>,
 }
 
 impl Router<'_> {
@@ -63,26 +75,77 @@ impl Router<'_> {
         R::Params: DeserializeOwned,
         R::Result: Serialize,
     {
-        if self.response.is_some() || self.request.method != R::METHOD {
-            return self;
+        if let Some(params) = self.params::<R>() {
+            let answered = params.and_then(|params| answer(self.server, params));
+            self.reply = Some(Reply::Now(response::<R>(self.request.id.clone(), answered)));
         }
-        let id = self.request.id.clone();
-        let answered = serde_json::from_value(self.request.params.take())
-            .map_err(|error| Refusal(ErrorCode::InvalidParams, format!("`{}`: {error}", R::METHOD)))
-            .and_then(|params| answer(self.server, params));
-        self.response = Some(match answered {
-            Ok(result) => Response::new_ok(id, result),
-            Err(Refusal(code, message)) => Response::new_err(id, code as i32, message),
-        });
         self
     }
 
-    fn finish(&mut self) -> Response {
+    /// What takes a while is found out elsewhere, of what is known now.
+    fn later<R>(&mut self, ask: impl FnOnce(&mut Server, R::Params) -> Result<Work<R>, Refusal>) -> &mut Self
+    where
+        R: request::Request + 'static,
+        R::Params: DeserializeOwned,
+        R::Result: Serialize,
+    {
+        if let Some(params) = self.params::<R>() {
+            let id = self.request.id.clone();
+            self.reply = Some(match params.and_then(|params| ask(self.server, params)) {
+                Ok(work) => {
+                    let (method, asked) = (R::METHOD.to_string(), id.clone());
+                    let answer = Box::new(move || response::<R>(asked, work()));
+                    Reply::Later(Question { id, method, answer })
+                }
+                Err(refusal) => Reply::Now(response::<R>(id, Err(refusal))),
+            });
+        }
+        self
+    }
+
+    /// The parameters of the request; nothing if it is another one, or answered.
+    fn params<R>(&mut self) -> Option<Result<R::Params, Refusal>>
+    where
+        R: request::Request,
+        R::Params: DeserializeOwned,
+    {
+        if self.reply.is_some() || self.request.method != R::METHOD {
+            return None;
+        }
+        let wrong = |error| Refusal(ErrorCode::InvalidParams, format!("`{}`: {error}", R::METHOD));
+        Some(serde_json::from_value(self.request.params.take()).map_err(wrong))
+    }
+
+    fn finish(&mut self) -> Reply {
         let Request { id, method, .. } = &self.request;
-        self.response.take().unwrap_or_else(|| {
+        self.reply.take().unwrap_or_else(|| {
             let message = format!("kirk does not know the request `{method}`");
-            Response::new_err(id.clone(), ErrorCode::MethodNotFound as i32, message)
+            Reply::Now(Response::new_err(id.clone(), ErrorCode::MethodNotFound as i32, message))
         })
+    }
+}
+
+fn response<R>(id: RequestId, answered: Answer<R>) -> Response
+where
+    R: request::Request,
+    R::Result: Serialize,
+{
+    match answered {
+        Ok(result) => Response::new_ok(id, result),
+        Err(Refusal(code, message)) => Response::new_err(id, code as i32, message),
+    }
+}
+
+/// What is known of a document, for whoever answers later.
+struct Known {
+    view: View,
+    uri: Uri,
+    encoding: Encoding,
+}
+
+impl Known {
+    fn converter(&self) -> Converter<'_> {
+        Converter { analysis: &self.view.analysis, uri: &self.uri, encoding: self.encoding }
     }
 }
 
@@ -93,13 +156,18 @@ impl Server {
         uri: &Uri,
         ask: impl FnOnce(&View, Converter<'_>) -> Result<T, Refusal>,
     ) -> Result<T, Refusal> {
+        let known = self.known(uri)?;
+        ask(&known.view, known.converter())
+    }
+
+    /// What is known of a document.
+    fn known(&mut self, uri: &Uri) -> Result<Known, Refusal> {
         let encoding = self.encoding;
         let Some(document) = self.documents.get_mut(&key(uri)) else {
             let message = format!("`{}` is not open", uri.as_str());
             return Err(Refusal(ErrorCode::InvalidParams, message));
         };
-        let view = document.view();
-        ask(&view, Converter { analysis: &view.analysis, uri, encoding })
+        Ok(Known { view: document.view(), uri: uri.clone(), encoding })
     }
 
     /// What is known to be wrong with a document.

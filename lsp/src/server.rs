@@ -1,7 +1,7 @@
 //! The protocol: what the client asks, in its order, and what it is told unasked.
 //!
-//! Four threads. One reads and one writes, so that neither waits for the client. One judges, as that may take long. The
-//! one in the middle, here, has the documents and answers, and waits for nothing but the next event. It takes all events
+//! Five threads. One reads and one writes, so that neither waits for the client. One judges, as that may take long, and one
+//! finds the answers that take a while. The one in the middle, here, has the documents and answers, and waits for nothing but the next event. It takes all events
 //! there are at once: of several edits that came meanwhile only the last text is analysed, and of several texts only the
 //! newest is judged.
 
@@ -21,14 +21,16 @@ use lsp_types::{InitializeParams, Uri};
 use serde_json::Value;
 
 use crate::analysis::Unjudged;
+use crate::capabilities;
 use crate::companions::{ReadFile, gather, path_of};
 use crate::convert::Converter;
 use crate::document::Document;
+use crate::errands::{self, Errand};
 use crate::feedback::feedback;
 use crate::lines::Encoding;
 use crate::mission::{Mission, judge};
+use crate::requests::{self, Reply};
 use crate::transport::{Incoming, Outgoing, read, send, write};
-use crate::{capabilities, requests};
 
 /// What happens to the server.
 enum Event {
@@ -71,6 +73,7 @@ pub fn serve(
     let (events, inbox) = channel();
     let (outbox, outgoing) = channel();
     let (jobs, waiting) = channel();
+    let (errands, questions) = channel();
     let reader_events = events.clone();
     thread::spawn(move || {
         read(input, |incoming| reader_events.send(Event::Incoming(incoming)).is_ok());
@@ -78,10 +81,12 @@ pub fn serve(
     });
     let writer = thread::spawn(move || write(output, &outgoing));
     let judge = thread::Builder::new().stack_size(STACK).spawn(move || judge_all(&waiting, &events));
-    if judge.is_err() {
+    let answers = outbox.clone();
+    let later = thread::Builder::new().stack_size(STACK).spawn(move || errands::run(&questions, &answers));
+    if judge.is_err() || later.is_err() {
         return false;
     }
-    let server = Server::new(outbox, jobs, files);
+    let server = Server::new(outbox, (jobs, errands), files);
     let middle = thread::Builder::new().stack_size(STACK).spawn(move || server.run(&inbox));
     let polite = middle.is_ok_and(|middle| middle.join().unwrap_or(false));
     // The outbox is gone with the server: what is left in it is written, and no more comes.
@@ -119,6 +124,7 @@ enum State {
 pub(crate) struct Server {
     outbox: Sender<Outgoing>,
     jobs: Sender<Job>,
+    errands: Sender<Errand>,
     state: State,
     pub(crate) encoding: Encoding,
     pub(crate) client: capabilities::Client,
@@ -131,10 +137,15 @@ pub(crate) struct Server {
 }
 
 impl Server {
-    fn new(outbox: Sender<Outgoing>, jobs: Sender<Job>, files: ReadFile) -> Server {
+    fn new(
+        outbox: Sender<Outgoing>,
+        (jobs, errands): (Sender<Job>, Sender<Errand>),
+        files: ReadFile,
+    ) -> Server {
         Server {
             outbox,
             jobs,
+            errands,
             state: State::New,
             encoding: Encoding::default(),
             client: capabilities::Client::default(),
@@ -213,10 +224,16 @@ impl Server {
             }
             (State::Open, method) => {
                 let method = method.to_string();
-                let answered = catch_unwind(AssertUnwindSafe(|| requests::answer(self, request)));
-                answered.unwrap_or_else(|_| {
-                    refuse(ErrorCode::InternalError, &format!("`{method}` failed: this is a bug in kirk"))
-                })
+                match catch_unwind(AssertUnwindSafe(|| requests::answer(self, request))) {
+                    Ok(Reply::Now(response)) => response,
+                    Ok(Reply::Later(question)) => {
+                        let _ = self.errands.send(Errand::Answer(question));
+                        return;
+                    }
+                    Err(_) => {
+                        refuse(ErrorCode::InternalError, &format!("`{method}` failed: this is a bug in kirk"))
+                    }
+                }
             }
         };
         send(&self.outbox, response);
@@ -253,6 +270,12 @@ impl Server {
             }
             notification::DidChangeWatchedFiles::METHOD => {
                 self.stale = true;
+                Ok(())
+            }
+            notification::Cancel::METHOD => {
+                if let Some(id) = withdrawn(&params) {
+                    let _ = self.errands.send(Errand::Withdraw(id));
+                }
                 Ok(())
             }
             notification::Initialized::METHOD => {
@@ -404,11 +427,16 @@ fn cancelled(events: &[Event]) -> HashSet<RequestId> {
         Event::Incoming(Incoming::Message(Message::Notification(it)))
             if it.method == notification::Cancel::METHOD =>
         {
-            serde_json::from_value(it.params.get("id")?.clone()).ok()
+            withdrawn(&it.params)
         }
         _ => None,
     };
     events.iter().filter_map(id).collect()
+}
+
+/// The request that a cancellation is of.
+fn withdrawn(params: &Value) -> Option<RequestId> {
+    serde_json::from_value(params.get("id")?.clone()).ok()
 }
 
 #[cfg(test)]
@@ -432,7 +460,9 @@ mod tests {
         assert_eq!(withdrawn, HashSet::from([RequestId::from(7), RequestId::from("seven".to_string())]));
         let (outbox, outgoing) = channel();
         let (jobs, _waiting) = channel();
-        let mut server = Server { state: State::Open, ..Server::new(outbox, jobs, Box::new(|_| None)) };
+        let (errands, _questions) = channel();
+        let mut server =
+            Server { state: State::Open, ..Server::new(outbox, (jobs, errands), Box::new(|_| None)) };
         let params = json!({"textDocument": {"uri": "file:///x"}, "position": {"line": 0, "character": 0}});
         server
             .request(Request { id: 7.into(), method: "textDocument/hover".to_string(), params }, &withdrawn);

@@ -4,7 +4,7 @@ use crate::conflict::Part;
 use crate::model::{EventId, Network};
 use crate::slack::hardest_yes;
 use crate::stnu::TooLarge;
-use crate::time::{Bound, Time};
+use crate::time::{Bound, Duration, Time};
 use crate::vary::{Knob, Probe};
 
 /// What can be promised of the time of one event, each alone, all else as it is.
@@ -35,9 +35,7 @@ pub fn promises(network: &Network, events: &[EventId]) -> Result<Option<Vec<Prom
             return Promise { by: Some(Time::ZERO), from: Some(Time::ZERO) };
         };
         let mut farthest = |part: Part| {
-            let dial = Probe::unbounded(part);
-            let position = hardest_yes(&mut probe, &dial);
-            dial.value(position).finite().map(|value| Time::from_micros(value.as_micros()))
+            farthest(&mut probe, part).finite().map(|value| Time::from_micros(value.as_micros()))
         };
         let promise = Promise {
             by: farthest(Part::RequirementUpper(requirement)),
@@ -47,6 +45,27 @@ pub fn promises(network: &Network, events: &[EventId]) -> Result<Option<Vec<Prom
         promise
     };
     Ok(Some(events.iter().map(of).collect()))
+}
+
+/// [`Promise::from`] of one event alone, from the origin; `None` if the network is not controllable.
+///
+/// # Errors
+/// [`TooLarge`] if the durations add up to more than 64-bit microseconds can hold.
+pub fn latest_start(network: &Network, event: EventId) -> Result<Option<Bound>, TooLarge> {
+    let mut probe = Probe::new(network);
+    if !probe.as_is()? {
+        return Ok(None);
+    }
+    let requirement = probe.require_time_of(event);
+    let latest = |requirement| farthest(&mut probe, Part::RequirementLower(requirement));
+    Ok(Some(requirement.map_or(Bound::Finite(Duration::ZERO), latest)))
+}
+
+/// How far a side that has no value yet can be bounded.
+fn farthest(probe: &mut Probe<'_>, part: Part) -> Bound {
+    let dial = Probe::unbounded(part);
+    let position = hardest_yes(probe, &dial);
+    dial.value(position)
 }
 
 /// How long what a requirement bounds may be made to take, its own upper bound aside, with all else still guaranteed.

@@ -28,6 +28,18 @@ pub struct Slack {
     pub room: Option<Duration>,
 }
 
+impl Slack {
+    /// Where the value may lie, in words.
+    pub fn range(&self) -> String {
+        match (self.least.finite(), self.most.finite()) {
+            (Some(least), Some(most)) => format!("{least} to {most} s"),
+            (Some(least), None) => format!("{least} s or more"),
+            (None, Some(most)) => format!("{most} s or less"),
+            (None, None) => "anything".to_string(),
+        }
+    }
+}
+
 /// Where each knob can be turned; `None` if the network is not controllable.
 ///
 /// Bounds stay in order: an upper bound cannot be below its lower one, whatever else would allow it.

@@ -7,7 +7,7 @@
 mod oracle;
 
 use kirk_network::merge::merge;
-use kirk_network::promise::{promises, stretch};
+use kirk_network::promise::{latest_start, promises, stretch};
 use kirk_network::slack::{Factor, Slack, beyond, bounds, common_factor, slack};
 use kirk_network::{
     Bound, ContingentLink, Duration, EventId, Network, Part, Requirement, Time, Verdict, check, json,
@@ -140,6 +140,8 @@ fn promises_are_kept_and_no_better_ones_can_be() {
                 assert_eq!((promise.by, promise.from), (Some(Time::ZERO), Some(Time::ZERO)));
                 continue;
             }
+            let alone = latest_start(network, *event).unwrap().unwrap().finite();
+            assert_eq!(alone.map(Duration::as_micros), promise.from.map(Time::as_micros));
             let about = || format!("{promise:?} of {}, {}", network.id(*event), describe());
             let bound = |time: i64| Bound::Finite(micros(time));
             let by = |time: i64| controllable(&timed(network, *event, Bound::Infinite, bound(time)));

@@ -10,20 +10,25 @@ use lsp_types::{
     WorkspaceSymbolResponse,
 };
 
-use super::{Answer, Params, Refusal, failed};
+use super::{Answer, Params, Refusal, Work, failed};
 use crate::capabilities::VERDICT;
 use crate::convert::{Converter, completion_kind, documentation, markdown};
 use crate::feedback::shown;
 use crate::server::Server;
 
-pub(super) fn hover(server: &mut Server, params: Params<HoverRequest>) -> Answer<HoverRequest> {
+/// An answer that is found by work elsewhere.
+type Later<R> = Result<Work<R>, Refusal>;
+
+pub(super) fn hover(server: &mut Server, params: Params<HoverRequest>) -> Later<HoverRequest> {
     let at = params.text_document_position_params;
-    server.at(&at, |view, offset, to| {
-        Ok(crate::hover(view, offset).map(|hover| lsp_types::Hover {
+    let known = server.known(&at.text_document.uri)?;
+    Ok(Box::new(move || {
+        let to = known.converter();
+        Ok(crate::hover(&known.view, to.offset(at.position)).map(|hover| lsp_types::Hover {
             contents: HoverContents::Markup(markdown(hover.markdown)),
             range: Some(to.range(hover.span)),
         }))
-    })
+    }))
 }
 
 pub(super) fn definition(server: &mut Server, params: Params<GotoDefinition>) -> Answer<GotoDefinition> {
@@ -185,8 +190,10 @@ pub(super) fn tokens(
     })
 }
 
-pub(super) fn hints(server: &mut Server, params: Params<InlayHintRequest>) -> Answer<InlayHintRequest> {
-    server.of(&params.text_document.uri, |view, to| {
+pub(super) fn hints(server: &mut Server, params: Params<InlayHintRequest>) -> Later<InlayHintRequest> {
+    let known = server.known(&params.text_document.uri)?;
+    Ok(Box::new(move || {
+        let to = known.converter();
         let hint = |hint: crate::Hint| lsp_types::InlayHint {
             position: to.position(hint.offset),
             label: InlayHintLabel::String(hint.label),
@@ -197,8 +204,8 @@ pub(super) fn hints(server: &mut Server, params: Params<InlayHintRequest>) -> An
             padding_right: None,
             data: None,
         };
-        Ok(Some(crate::hints(view, to.span(params.range)).into_iter().map(hint).collect()))
-    })
+        Ok(Some(crate::hints(&known.view, to.span(params.range)).into_iter().map(hint).collect()))
+    }))
 }
 
 pub(super) fn lenses(server: &mut Server, params: Params<CodeLensRequest>) -> Answer<CodeLensRequest> {
@@ -217,10 +224,12 @@ pub(super) fn lenses(server: &mut Server, params: Params<CodeLensRequest>) -> An
     })
 }
 
-pub(super) fn actions(server: &mut Server, params: Params<CodeActionRequest>) -> Answer<CodeActionRequest> {
+pub(super) fn actions(server: &mut Server, params: Params<CodeActionRequest>) -> Later<CodeActionRequest> {
     let uri = params.text_document.uri;
     let problems = server.problems(&uri);
-    server.of(&uri, |view, to| {
+    let known = server.known(&uri)?;
+    Ok(Box::new(move || {
+        let to = known.converter();
         let wanted = to.span(params.range);
         let here =
             |it: &kirk_compiler::Diagnostic| it.span.start <= wanted.end && wanted.start <= it.span.end;
@@ -234,8 +243,8 @@ pub(super) fn actions(server: &mut Server, params: Params<CodeActionRequest>) ->
                 ..lsp_types::CodeAction::default()
             })
         };
-        Ok(Some(crate::actions(view, &problems).into_iter().map(action).collect()))
-    })
+        Ok(Some(crate::actions(&known.view, &problems).into_iter().map(action).collect()))
+    }))
 }
 
 fn item(found: crate::Completion, rank: usize, snippets: bool, to: Converter<'_>) -> CompletionItem {

@@ -1,7 +1,7 @@
 //! Why a network is not controllable, as a diagnostic and as JSON.
 
 use kirk_compiler::repair::Changed;
-use kirk_compiler::{Explain, Said, Span, Told};
+use kirk_compiler::{Explain, Origin, OriginKind, Said, Side, Span, Told};
 use kirk_network::assume::Assumption;
 use kirk_network::{Bound, Conflict, Duration, Network, Part};
 use serde::Serialize;
@@ -105,6 +105,14 @@ impl<'a> ConflictJson<'a> {
     }
 }
 
+/// Where a bound is written: of a program the form that says so, of a network file what says this very bound.
+fn place(part: Part, origin: &Origin) -> Span {
+    match (origin.kind, Side::of(part)) {
+        (OriginKind::Requirement | OriginKind::Link, Some(side)) => origin.place(side),
+        _ => origin.span,
+    }
+}
+
 /// What a bound is called.
 fn kind(part: Part) -> &'static str {
     match part {
@@ -151,7 +159,7 @@ pub(crate) fn members(
                 times: share.times,
                 amount: share.amount,
                 text: origin.map_or("nothing happens before the origin".to_string(), |it| it.text.clone()),
-                span: origin.and_then(|origin| reporter.span_json(origin.span)),
+                span: origin.and_then(|origin| reporter.span_json(place(share.part, origin))),
             }
         })
         .collect()

@@ -111,6 +111,7 @@ fn wishes(arguments: &RepairOf, input: &Input) -> Result<Wishes, String> {
         }),
         weights: arguments.weight.iter().map(weight).collect::<Result<_, _>>()?,
         limit: arguments.limit,
+        ..Wishes::default()
     })
 }
 
@@ -252,7 +253,10 @@ fn lines(
     if found.gave_up {
         lines.extend([
             String::new(),
-            "The search was given up before its end: there may be cheaper ones.".to_string(),
+            match found.proposals.is_empty() {
+                true => "The search was given up before its end: there may be some.".to_string(),
+                false => "The search was given up before its end: there may be cheaper ones.".to_string(),
+            },
         ]);
     }
     if let Some(first) = found.proposals.iter().position(Proposal::is_applicable) {

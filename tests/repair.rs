@@ -167,6 +167,34 @@ fn a_network_file_is_repaired_where_its_numbers_stand() {
 }
 
 #[test]
+fn five_hundred_windows_that_are_too_short_are_widened_at_once() {
+    use std::fmt::Write;
+    let mut text = "(define-control-program listen () (declare (primitive)
+  (duration (simple :lower-bound 5 :upper-bound 7 :max-observation-delay 1) :contingent t)))
+(define-control-program main () (sequence (:slack t)\n"
+        .to_string();
+    for window in 0..500 {
+        let (most, before) = (8 + window % 4, 1 + window % 5);
+        writeln!(
+            text,
+            "  (with-temporal-constraint (simple-temporal :upper-bound {most})
+    (sequence (:slack t) (delay {before} 20) (listen) (delay 2 30)))"
+        )
+        .unwrap();
+    }
+    text.push_str("))\n");
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("windows.rmpl");
+    fs::write(&file, text).unwrap();
+    let path = file.to_str().unwrap();
+    let applied = kirk(&["repair", path, "--apply", "1"]);
+    assert_eq!(applied.status.code(), Some(0), "{}", stderr(&applied));
+    let changes = stdout(&applied).lines().count();
+    assert!(changes > 300, "{changes}");
+    assert_eq!(status(&["check", path, "-q"]), Some(0));
+}
+
+#[test]
 fn what_kirk_cannot_write_is_said_to_be_to_be_made_by_hand() {
     let file = "tests/networks/lane50_notDC_000.stnu";
     let told = stdout(&kirk(&["repair", file]));

@@ -172,6 +172,29 @@ fn a_no_that_only_an_assumption_makes_is_explained_too() {
 }
 
 #[test]
+fn each_bound_of_a_network_file_is_blamed_where_it_stands() {
+    let file = "tests/networks/lane50_notDC_000.stnu";
+    let text = std::fs::read_to_string(file).unwrap();
+    let output = kirk(&["check", "--format", "json", file]);
+    let checked: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let mut links = 0;
+    for member in checked["conflict"].as_array().unwrap() {
+        let [from, to] = ["from", "to"].map(|end| member[end].as_str().unwrap());
+        let line = member["span"]["start"]["line"].as_u64().unwrap() as usize;
+        let edge = text.lines().nth(line - 1).unwrap();
+        // The way back says the least of a requirement, and with labels the most of a contingent link.
+        let (source, target) = match member["kind"].as_str().unwrap() {
+            "requirement-upper" | "contingent-lower" => (from, to),
+            "requirement-lower" | "contingent-upper" => (to, from),
+            kind => panic!("{kind}"),
+        };
+        assert!(edge.contains(&format!("source=\"{source}\" target=\"{target}\"")), "{member}: {edge}");
+        links += usize::from(edge.contains("contingent"));
+    }
+    assert!(links > 1);
+}
+
+#[test]
 fn the_exit_status_is_that_of_a_check() {
     assert_eq!(log(&["examples/rmpl/eat-and-bike.rmpl"]).1, Some(0));
     assert_eq!(log(&["examples/rmpl/too-late.rmpl", "examples/rmpl/eat-and-bike.rmpl"]).1, Some(1));

@@ -203,7 +203,8 @@ impl Origins {
             }
         };
         let link = |(index, link): (usize, &ContingentLink)| {
-            let (place, end) = (span(Part::LinkUpper(index)), format!("`{}`", label(link.to)));
+            let end = format!("`{}`", label(link.to));
+            let [lower_place, upper_place] = [Part::LinkLower(index), Part::LinkUpper(index)].map(span);
             let subject = Subject::Reach(format!("from `{}` to {end}", label(link.from)));
             let mut text = format!("{} to {} s {subject}, Nature decides", link.lower, link.upper);
             if link.delay != Delay::NONE {
@@ -215,7 +216,8 @@ impl Origins {
                 label(link.from).to_string(),
                 label(link.to).to_string(),
             ];
-            Origin { span: place, text, kind: OriginKind::Link, subject, end, names, places: [place; 4] }
+            let places = [lower_place, upper_place, lower_place, upper_place];
+            Origin { span: lower_place, text, kind: OriginKind::Link, subject, end, names, places }
         };
         Origins {
             requirements: network.requirements().iter().enumerate().map(requirement).collect(),

@@ -36,12 +36,15 @@ pub struct Wishes {
     pub weights: Vec<(String, u64)>,
     /// So many proposals at most.
     pub limit: usize,
+    /// How long to look: so many verdicts at most, times the events each is about.
+    pub effort: usize,
 }
 
 impl Default for Wishes {
     /// What is ours may change, nothing rather than anything else, and there are five proposals at most.
     fn default() -> Wishes {
-        Wishes { nature: false, keep: Vec::new(), prefer: None, weights: Vec::new(), limit: 5 }
+        let effort = 8_000_000;
+        Wishes { nature: false, keep: Vec::new(), prefer: None, weights: Vec::new(), limit: 5, effort }
     }
 }
 
@@ -128,7 +131,10 @@ pub fn proposals(
 ) -> Result<Option<Proposals>, TooLarge> {
     let levers = levers(network, origins, sources, wishes);
     let allowed: Vec<Allowed> = levers.values().map(|lever| lever.allowed.clone()).collect();
-    let options = Options { limit: wishes.limit, ..Options::default() };
+    let Options { rounds, patience, .. } = Options::default();
+    let verdicts = wishes.effort / network.events().len().max(1);
+    let options =
+        Options { limit: wishes.limit, rounds: rounds.min(verdicts), patience: patience.min(verdicts) };
     let Some(Repairs { repairs, not_alone, ended }) = repairs(network, &allowed, &options)? else {
         return Ok(None);
     };

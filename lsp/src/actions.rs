@@ -1,5 +1,7 @@
 //! What puts a problem right, as an edit that can be made at once.
 
+use std::collections::BTreeSet;
+
 use kirk_compiler::repair::{Proposal, Wishes, proposals, slack};
 use kirk_compiler::{Code, Diagnostic, Edit, Lowered, Span};
 
@@ -22,6 +24,7 @@ pub struct Action {
 pub fn actions(view: &View, problems: &[Diagnostic]) -> Vec<Action> {
     let analysis = &*view.analysis;
     let mut found = Vec::new();
+    let mut repaired = BTreeSet::new();
     for (problem, diagnostic) in problems.iter().enumerate() {
         let mut offer = |fix: Option<(String, Vec<(Span, String)>)>| {
             found.extend(fix.map(|(title, edits)| Action { title, problem, edits }));
@@ -32,7 +35,8 @@ pub fn actions(view: &View, problems: &[Diagnostic]) -> Vec<Action> {
         }
         match diagnostic.code {
             Code::StartsAtDelayedEnd => offer(slack_around(analysis, diagnostic.span)),
-            Code::NotControllable if view.is_current() => {
+            // Each of its conflicts is a problem, and what repairs a mission settles all of them.
+            Code::NotControllable if view.is_current() && repaired.insert(diagnostic.span) => {
                 let mission = view.missions.iter().find(|mission| mission.name == diagnostic.span);
                 if let Some(mission) = mission
                     && mission.verdict == Judgement::Uncontrollable
@@ -62,13 +66,15 @@ fn suggested<'a>(analysis: &'a Analysis, diagnostic: &'a Diagnostic) -> impl Ite
 
 /// What makes a mission controllable, as `kirk repair` proposes it. Each is tried before it is offered.
 fn repairs(analysis: &Analysis, mission: &Mission) -> Vec<Fix> {
-    const LARGE: usize = 1_000;
-    // Of large missions nothing is tried, as each trial takes as long as the verdict.
+    const LARGE: usize = 2_000;
+    // Somebody waits: what is not found soon is not offered. Of large missions nothing is tried, as each trial takes as long as the
+    // verdict.
+    let wishes = Wishes { effort: 50_000, ..Wishes::default() };
     if mission.occurrences.len() > LARGE {
         return Vec::new();
     }
     let Lowered { network, origins, .. } = &mission.lowered;
-    let found = proposals(network, origins, &analysis.sources, &Wishes::default()).ok().flatten();
+    let found = proposals(network, origins, &analysis.sources, &wishes).ok().flatten();
     let fix = |Proposal { changes }: Proposal| {
         let titles: Vec<&str> = changes.iter().map(|change| change.title.as_str()).collect();
         let edits = changes.iter().flat_map(|change| &change.edits);

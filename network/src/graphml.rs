@@ -110,7 +110,7 @@ impl Reader<'_> {
                     self.problem(node.offset, message);
                 }
             }
-            events.push(Event { names: own });
+            events.push(Event { names: own.into() });
         }
         let mut edge_ids = BTreeSet::new();
         let mut edges = Vec::new();
@@ -143,13 +143,15 @@ impl Reader<'_> {
         let contingents = links.iter().map(|(_, link)| *link).collect();
         match Network::new(name, origin?, events, intervals.requirements, contingents) {
             Ok(network) => {
-                let contingents = links.iter().map(|(element, _)| self.tag(element)).collect();
+                let tags = |says: &[&Element; 2]| says.map(|element| self.tag(element));
+                let contingents = links.iter().map(|(says, _)| tags(says)).collect();
                 Some((network, SourceMap { requirements: intervals.places, contingents }))
             }
             Err(errors) => {
                 for error in errors {
                     match error.link().and_then(|link| links.get(link)) {
-                        Some((edge, _)) => {
+                        Some(([one, other], _)) => {
+                            let edge = if one.offset < other.offset { one } else { other };
                             let message = format!("{}: {}", edge.describe("edge"), error.what());
                             self.problem(edge.offset, message);
                         }
@@ -296,12 +298,12 @@ impl Reader<'_> {
         Some(Edge { element, from: from?, to: to?, contingent, value, label })
     }
 
-    /// Joins pairs of contingent edges to links, each with its first edge.
+    /// Joins pairs of contingent edges to links, each with the edge that says its upper bound and that which says its lower one.
     fn links<'d>(
         &mut self,
         edges: &[Edge<'d>],
         ids: &BTreeMap<&str, EventId>,
-    ) -> Vec<(&'d Element, ContingentLink)> {
+    ) -> Vec<([&'d Element; 2], ContingentLink)> {
         let id_of: BTreeMap<EventId, &str> = ids.iter().map(|(id, event)| (*event, *id)).collect();
         let mut at: BTreeMap<(EventId, EventId), usize> = BTreeMap::new();
         for (index, edge) in edges.iter().enumerate().filter(|(_, edge)| edge.contingent) {
@@ -324,7 +326,9 @@ impl Reader<'_> {
                 // An edge from a node to itself is its own opposite.
                 Some(&other) if other != index => {
                     if index < other {
-                        links.extend(self.link(edge, &edges[other], &id_of).map(|link| (edge.element, link)));
+                        let pair = [edge, &edges[other]];
+                        let link = self.link(edge, &edges[other], &id_of);
+                        links.extend(link.map(|link| (upper_and_lower(pair, link), link)));
                     }
                 }
                 _ => {
@@ -453,4 +457,12 @@ impl Reader<'_> {
 
 fn is_empty_label(text: &str) -> bool {
     matches!(text.trim(), "" | "⊡" | "{}")
+}
+
+/// Of a pair of contingent edges the one that says the upper bound of their link, and the other. With labels that is the way back, with
+/// plain values the way there.
+fn upper_and_lower<'d>(pair: [&Edge<'d>; 2], link: ContingentLink) -> [&'d Element; 2] {
+    let [first, second] = pair.map(|edge| edge.element);
+    let is_way_there = pair[0].from == link.from;
+    if is_way_there == pair[0].label.is_none() { [first, second] } else { [second, first] }
 }

@@ -5,12 +5,12 @@
 //! impossible. An event that is fixed by someone else (the origin, a contingent event) is never merged with another
 //! such event: that requirement stays, and the controllability check says what is wrong with it.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use petgraph::unionfind::UnionFind;
 
 use crate::conflict::{Conflict, Part, Share};
-use crate::model::{ContingentLink, Event, EventId, ModelError, Network, Requirement};
+use crate::model::{ContingentLink, Event, EventId, ModelError, Name, Network, Requirement};
 use crate::time::{Bound, Duration};
 
 /// A network in which no [0, 0] requirement is left that could be merged away, and the way back to the one it is from.
@@ -76,15 +76,22 @@ fn merge_with(
     }
     let mut event_of = vec![EventId(u32::MAX); count];
     let mut events: Vec<Event> = Vec::with_capacity(count);
+    // The names of those that become one.
+    let mut names_of: BTreeMap<usize, Vec<Name>> = BTreeMap::new();
     for event in network.event_ids() {
+        let names = &network.events()[event.index()].names;
         let root = classes.root(event).index();
         if event_of[root].0 == u32::MAX {
             event_of[root] = EventId(events.len() as u32);
-            events.push(Event { names: Vec::new() });
+            events.push(Event { names: names.clone() });
+        } else {
+            let class = event_of[root].index();
+            names_of.entry(class).or_insert_with(|| events[class].names.to_vec()).extend_from_slice(names);
         }
-        let class = event_of[root];
-        event_of[event.index()] = class;
-        events[class.index()].names.extend_from_slice(&network.events()[event.index()].names);
+        event_of[event.index()] = event_of[root];
+    }
+    for (class, names) in names_of {
+        events[class].names = names.into();
     }
     let mut requirements = Vec::with_capacity(network.requirements().len());
     let mut requirement_of = Vec::with_capacity(network.requirements().len());

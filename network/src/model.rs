@@ -4,6 +4,7 @@
 //! controllability*, IJCAI 2018. A [`Network`] is valid by construction: [`Network::new`] is the only way to one.
 
 use std::fmt;
+use std::sync::Arc;
 
 use crate::time::{Bound, Duration};
 
@@ -21,8 +22,8 @@ impl EventId {
 /// A time point with all the names it goes by. The first name is its id; several names come from merging.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Event {
-    /// At least one name.
-    pub names: Vec<Name>,
+    /// At least one name. Networks are copied again and again to be asked about, and their names are not.
+    pub names: Arc<[Name]>,
 }
 
 impl Event {
@@ -99,7 +100,7 @@ impl Delay {
 pub struct Network {
     name: String,
     origin: EventId,
-    events: Vec<Event>,
+    events: Arc<[Event]>,
     requirements: Vec<Requirement>,
     contingents: Vec<ContingentLink>,
     /// For every event, the index of the contingent link that ends there.
@@ -118,8 +119,14 @@ impl Network {
         contingents: Vec<ContingentLink>,
     ) -> Result<Network, Vec<ModelError>> {
         let mut errors = faults_of_names(&events);
-        let mut network =
-            Network { name, origin, link_of: vec![None; events.len()], events, requirements, contingents };
+        let mut network = Network {
+            name,
+            origin,
+            link_of: vec![None; events.len()],
+            events: events.into(),
+            requirements,
+            contingents,
+        };
         network.validate(&mut errors);
         if errors.is_empty() { Ok(network) } else { Err(errors) }
     }
@@ -134,8 +141,14 @@ impl Network {
     ) -> Result<Network, Vec<ModelError>> {
         debug_assert_eq!(faults_of_names(&events), []);
         let mut errors = Vec::new();
-        let mut network =
-            Network { name, origin, link_of: vec![None; events.len()], events, requirements, contingents };
+        let mut network = Network {
+            name,
+            origin,
+            link_of: vec![None; events.len()],
+            events: events.into(),
+            requirements,
+            contingents,
+        };
         network.validate(&mut errors);
         if errors.is_empty() { Ok(network) } else { Err(errors) }
     }
@@ -296,7 +309,7 @@ impl Network {
 fn faults_of_names(events: &[Event]) -> Vec<ModelError> {
     let mut errors = Vec::new();
     let mut names: Vec<&str> =
-        events.iter().flat_map(|event| &event.names).map(|name| name.text.as_str()).collect();
+        events.iter().flat_map(|event| &*event.names).map(|name| name.text.as_str()).collect();
     names.sort_unstable();
     let mut reported = None;
     for pair in names.windows(2) {

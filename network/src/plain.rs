@@ -226,7 +226,7 @@ impl<'a> Reader<'a> {
                 );
                 self.problem(word.offset, message);
             }
-            events.push(Event { names: vec![Name { text: word.text.to_string(), internal: false }] });
+            events.push(Event { names: [Name { text: word.text.to_string(), internal: false }].into() });
         }
         let (edges, links) = (std::mem::take(&mut self.edges), std::mem::take(&mut self.links));
         self.compare_counts(events.len(), edges.len(), links.len());
@@ -265,7 +265,7 @@ impl<'a> Reader<'a> {
         }
         match Network::new(String::new(), origin?, events, intervals.requirements, contingents) {
             Ok(network) => {
-                let contingents = links.iter().map(Line::range).collect();
+                let contingents = links.iter().map(|line| [line.range(), line.range()]).collect();
                 Some((network, SourceMap { requirements: intervals.places, contingents }))
             }
             Err(errors) => {

@@ -128,7 +128,7 @@ impl Reduction {
             if names.iter().any(|name| name.text == label) {
                 Event { names: names.clone() }
             } else {
-                Event { names: vec![Name { text: label, internal: false }] }
+                Event { names: [Name { text: label, internal: false }].into() }
             }
         });
         let requirement = |edge: &Edge| Requirement {

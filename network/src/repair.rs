@@ -19,8 +19,8 @@ mod search;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 
-use crate::check::{Verdict, check};
-use crate::conflict::Part;
+use crate::conflict::{Conflict, Part};
+use crate::conflicts::conflicts;
 use crate::least::{could_settle, least_changes};
 use crate::model::Network;
 use crate::slack::bounds;
@@ -57,18 +57,26 @@ impl Allowed {
     }
 }
 
+/// From so many conflicts on that have no bound of ours in common, all of them are looked for first.
+const MANY: usize = 8;
+
+/// Other plans than one of more changes than this are not looked for.
+const MOST_CHANGES: usize = 50;
+
 /// How much to look for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
     /// So many repairs at most.
     pub limit: usize,
-    /// So many linear programs and verdicts at most in the search for joint changes.
+    /// So many linear programs and verdicts at most in the search for joint changes, large programs counting for more.
     pub rounds: usize,
+    /// So many knobs at most are tried alone; and for want of a cheap repair one of at most so many changes is looked for.
+    pub patience: usize,
 }
 
 impl Default for Options {
     fn default() -> Options {
-        Options { limit: 5, rounds: 1000 }
+        Options { limit: 5, rounds: 1000, patience: 1000 }
     }
 }
 
@@ -111,7 +119,7 @@ pub enum Ended {
 /// says about other values is a guess; the repair is proven and no change in it can be less, but another may be cheaper.
 ///
 /// The second differs from the first in that it does without one of its knobs, and so on: a repair that only adds a knob to
-/// those of a cheaper one is not looked for. A change of one knob that is enough alone is always looked for.
+/// those of a cheaper one is not looked for. A change of one knob that is enough alone is always looked for, if there is the patience.
 ///
 /// Of knobs with a bound in common, the first, in their own order, is used where several change; the others alone. The order
 /// of `allowed` is of no importance.
@@ -143,27 +151,35 @@ pub fn repairs(
     allowed: &[Allowed],
     options: &Options,
 ) -> Result<Option<Repairs>, TooLarge> {
-    let Verdict::Uncontrollable(conflict) = check(network)? else { return Ok(None) };
+    let independent = conflicts(network, MANY)?;
+    if independent.is_empty() {
+        return Ok(None);
+    }
     let mut allowed = allowed.to_vec();
     allowed.sort();
     allowed.dedup_by(|a, b| a.knob == b.knob);
-    let could_settle: BTreeSet<Part> = could_settle(network, &conflict).into_iter().collect();
-    let candidates: Vec<Knob> = allowed.iter().map(|it| it.knob.clone()).collect();
-    let (touching, others): (Vec<Knob>, Vec<Knob>) =
-        candidates.into_iter().partition(|knob| knob.parts().iter().any(|part| could_settle.contains(part)));
-    let least = least_changes(network, &touching)?;
+    let (mut touching, mut not_alone) = with_a_part_in_all(network, &allowed, &independent);
     let mut search = Search::new(network, &allowed, options.rounds);
+    if touching.len() > options.patience {
+        touching.truncate(options.patience);
+        search.give_up();
+    }
+    let least = least_changes(network, &touching)?;
     let mut singles: BTreeMap<Knob, Plan> = BTreeMap::new();
-    let mut not_alone = others;
     for (knob, change) in touching.into_iter().zip(least) {
         match change.and_then(|change| search.single(&change)) {
             Some(plan) => _ = singles.insert(knob, plan),
             None => not_alone.push(knob),
         }
     }
-    let mut plans = cheapest(&mut search, singles.into_values().collect(), options.limit);
+    // Of many it takes at least so many changes, and it would take as many programs to come upon them one by one.
+    let is_hopeful = independent.len() < MANY || search.gather();
+    let mut plans = Vec::new();
+    if is_hopeful {
+        plans = cheapest(&mut search, singles.into_values().collect(), options.limit);
+    }
     if plans.is_empty() && search.gave_up() {
-        plans.extend(search.any());
+        plans.extend(search.any(options.patience));
     }
     plans.truncate(options.limit);
     let repairs: Vec<Repair> = plans.iter().map(|plan| search.repair(plan)).collect();
@@ -174,6 +190,21 @@ pub fn repairs(
     not_alone.sort();
     let ended = if search.gave_up() { Ended::OutOfRounds } else { Ended::Complete };
     Ok(Some(Repairs { repairs, not_alone, ended }))
+}
+
+/// The knobs that have a part in every conflict, and those that cannot settle all of them alone.
+fn with_a_part_in_all(
+    network: &Network,
+    allowed: &[Allowed],
+    conflicts: &[Conflict],
+) -> (Vec<Knob>, Vec<Knob>) {
+    let settle =
+        |conflict: &Conflict| -> BTreeSet<Part> { could_settle(network, conflict).into_iter().collect() };
+    let settle: Vec<BTreeSet<Part>> = conflicts.iter().map(settle).collect();
+    let has_a_part = |knob: &Knob| {
+        settle.iter().all(|could_settle| knob.parts().iter().any(|part| could_settle.contains(part)))
+    };
+    allowed.iter().map(|it| it.knob.clone()).partition(has_a_part)
 }
 
 /// By how much each knob is turned, by its number, in microseconds: those that are turned at all.
@@ -206,6 +237,11 @@ fn cheapest(search: &mut Search<'_>, known: Vec<Plan>, limit: usize) -> Vec<Plan
             continue;
         };
         taken.insert(knobs(&plan));
+        // One change less of very many leaves it what it is.
+        if plan.len() > MOST_CHANGES && taken.len() < limit {
+            search.give_up();
+            break;
+        }
         for &knob in plan.keys() {
             let mut without = without.clone();
             without.insert(knob);

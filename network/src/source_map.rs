@@ -9,8 +9,8 @@ use crate::conflict::Part;
 pub struct SourceMap {
     /// For each requirement, what says its upper bound and what says its lower one.
     pub requirements: Vec<[Range<usize>; 2]>,
-    /// For each contingent link, the element it begins with.
-    pub contingents: Vec<Range<usize>>,
+    /// For each contingent link the same.
+    pub contingents: Vec<[Range<usize>; 2]>,
 }
 
 impl SourceMap {
@@ -21,10 +21,10 @@ impl SourceMap {
             Part::RequirementLower(index) | Part::Join(index) => {
                 self.requirements.get(index).map(|[_, lower]| lower.clone())
             }
-            Part::LinkLower(index)
-            | Part::LinkUpper(index)
-            | Part::DelayMin(index)
-            | Part::DelayMax(index) => self.contingents.get(index).cloned(),
+            Part::LinkUpper(index) | Part::DelayMin(index) | Part::DelayMax(index) => {
+                self.contingents.get(index).map(|[upper, _]| upper.clone())
+            }
+            Part::LinkLower(index) => self.contingents.get(index).map(|[_, lower]| lower.clone()),
             Part::AfterOrigin => None,
         }
     }

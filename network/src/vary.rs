@@ -81,10 +81,18 @@ impl Knob {
     /// delay follows a longest one that becomes less than it. `None` if that is no network.
     pub fn at(&self, network: &Network, to: Bound) -> Option<Network> {
         let mut varied = network.clone();
-        for part in &self.parts {
-            axis::set(&mut varied, *part, self.shifted(network, *part, to)?);
+        self.turn(&mut varied, to)?;
+        Some(varied)
+    }
+
+    /// Turns the knob in a network; `None` if that is no network any more.
+    fn turn(&self, network: &mut Network, to: Bound) -> Option<()> {
+        let shifted: Option<Vec<Bound>> =
+            self.parts.iter().map(|part| self.shifted(network, *part, to)).collect();
+        for (part, value) in self.parts.iter().zip(shifted?) {
+            axis::set(network, *part, value);
         }
-        axis::in_order(&varied, &self.parts).then_some(varied)
+        axis::in_order(network, &self.parts).then_some(())
     }
 
     /// The value of one of the bounds when the first is at `to`. `None` if it is beyond what a model may contain.
@@ -120,5 +128,7 @@ impl Change {
 
 /// The network with several knobs turned, one after the other; `None` if that is no network.
 pub fn changed(network: &Network, changes: &[Change]) -> Option<Network> {
-    changes.iter().try_fold(network.clone(), |network, change| change.knob.at(&network, change.to))
+    let mut varied = network.clone();
+    changes.iter().try_for_each(|change| change.knob.turn(&mut varied, change.to))?;
+    Some(varied)
 }

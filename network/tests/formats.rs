@@ -136,14 +136,15 @@ fn random_network(random: &mut Random, parallel: bool) -> Network {
         }
     }
     random.shuffle(&mut names);
-    let mut events: Vec<Event> = Vec::new();
+    let mut events: Vec<Vec<Name>> = Vec::new();
     for text in names {
         let name = Name { text, internal: random.percent(30) };
         match events.last_mut() {
-            Some(event) if random.percent(20) => event.names.push(name),
-            _ => events.push(Event { names: vec![name] }),
+            Some(event) if random.percent(20) => event.push(name),
+            _ => events.push(vec![name]),
         }
     }
+    let events: Vec<Event> = events.into_iter().map(|names| Event { names: names.into() }).collect();
     let count = events.len() as i64;
     let origin = EventId(random.within(0..=count - 1) as u32);
     let micros = |random: &mut Random, range| Duration::from_micros(random.within(range));

@@ -301,7 +301,7 @@ fn written(text: &str) -> Network {
             requirements.push(Requirement { from, to, lower, upper });
         }
     }
-    let named = |name: &&str| Event { names: vec![Name { text: name.to_string(), internal: false }] };
+    let named = |name: &&str| Event { names: [Name { text: name.to_string(), internal: false }].into() };
     let events = names.iter().map(named).collect();
     Network::new("classic".to_string(), EventId(0), events, requirements, contingents)
         .expect("a valid network")

@@ -123,7 +123,7 @@ fn a_sequence_of_any_length_and_order_is_decided_in_time_linear_in_its_length() 
             _ => {}
         }
         let events = (0..=2 * ACTIVITIES)
-            .map(|event| Event { names: vec![Name { text: format!("event.{event}"), internal: false }] });
+            .map(|event| Event { names: [Name { text: format!("event.{event}"), internal: false }].into() });
         let event = |number: u32| EventId(if number == 0 { 0 } else { place[number as usize - 1] });
         let requirement = |number: u32, lower, upper| Requirement {
             from: event(number),

@@ -222,7 +222,7 @@ fn hold_to_promises(network: &Network, allowed: &[Allowed], limit: usize, found:
     );
 }
 
-const WELL: Options = Options { limit: 5, rounds: 2000 };
+const WELL: Options = Options { limit: 5, rounds: 2000, patience: 1000 };
 
 /// Small, and with several conflicts more often than not.
 fn tight() -> Shape {
@@ -377,12 +377,12 @@ fn every_repair_is_proven_and_no_change_in_it_can_be_less() {
         }
         let mut allowed: Vec<Allowed> =
             knobs.into_iter().map(|knob| Allowed::relative(&network, knob, unit)).collect();
-        let options = Options { limit: 3, rounds: 500 };
+        let options = Options { limit: 3, rounds: 500, ..WELL };
         let Some(found) = repairs(&network, &allowed, &options).unwrap() else { continue };
         hold_to_promises(&network, &allowed, options.limit, &found, &format!("seed {seed}"));
         random.shuffle(&mut allowed);
         assert_eq!(repairs(&network, &allowed, &options).unwrap().as_ref(), Some(&found), "seed {seed}");
-        let hasty = Options { limit: 3, rounds: 2 };
+        let hasty = Options { limit: 3, rounds: 2, ..WELL };
         let some = repairs(&network, &allowed, &hasty).unwrap().unwrap();
         hold_to_promises(&network, &allowed, 0, &some, &format!("seed {seed}, in a hurry"));
         // Both ends of Nature's durations cannot go all the way, and nothing is claimed of chains with late news.
@@ -530,7 +530,56 @@ fn no_rounds_are_not_enough_and_that_is_said() {
     let text = r#"{"format": "kirk-network/1", "origin": "z", "events": ["z", "a"],
         "requirements": [{"from": "z", "to": "a", "lower": 95}, {"from": "z", "to": "a", "upper": 70}]}"#;
     let network = json::read(text).unwrap();
-    let none = Options { limit: 3, rounds: 0 };
+    let none = Options { limit: 3, rounds: 0, ..WELL };
     let found = repairs(&network, &second_units(&network, ours(&network)), &none).unwrap().unwrap();
     assert_eq!((found.repairs.len(), found.ended), (2, Ended::OutOfRounds));
+}
+
+/// One after the other, each too short by 2 s: `count` of them.
+fn windows(count: usize) -> Network {
+    let mut events = vec!["\"z\"".to_string()];
+    let (mut requirements, mut contingents) = (Vec::new(), Vec::new());
+    let mut last = "z".to_string();
+    for number in 0..count {
+        let [start, end] = ["s", "e"].map(|name| format!("{name}{number}"));
+        events.extend([&start, &end].map(|name| format!("\"{name}\"")));
+        let require = |from: &str, to: &str, bounds: &str| {
+            format!("{{\"from\": \"{from}\", \"to\": \"{to}\", {bounds}}}")
+        };
+        requirements.push(require(&last, &start, "\"lower\": 0"));
+        requirements.push(require(&last, &end, &format!("\"upper\": {}", 10 + number % 5)));
+        contingents.push(require(&start, &end, &format!("\"lower\": 5, \"upper\": {}", 12 + number % 5)));
+        last = end;
+    }
+    json::read(&format!(
+        "{{\"format\": \"kirk-network/1\", \"origin\": \"z\", \"events\": [{}], \"requirements\": [{}], \"contingents\": [{}]}}",
+        events.join(", "),
+        requirements.join(", "),
+        contingents.join(", ")
+    ))
+    .unwrap()
+}
+
+#[test]
+fn what_has_many_conflicts_is_settled_by_as_many_changes_and_by_none_alone() {
+    for count in [2, 7, 8, 9, 60, 300] {
+        let network = windows(count);
+        let allowed = second_units(&network, ours(&network));
+        let found = repairs(&network, &allowed, &Options::default()).unwrap().unwrap();
+        let first = &found.repairs[0];
+        assert_eq!(first.changes.len(), count);
+        assert!(
+            first.changes.iter().all(|change| change.amount() == Some(Duration::from_secs(2))),
+            "{count}"
+        );
+        assert!(judge(&changed(&network, &first.changes).unwrap()), "{count}");
+        assert_eq!(found.not_alone.len(), allowed.len(), "{count}");
+        // That no others were looked for is said.
+        assert_eq!(found.ended == Ended::OutOfRounds, count > 50, "{count}");
+    }
+    let network = windows(300);
+    let allowed = second_units(&network, ours(&network));
+    let hasty = Options { rounds: 40, patience: 40, ..Options::default() };
+    let found = repairs(&network, &allowed, &hasty).unwrap().unwrap();
+    assert_eq!((found.repairs.len(), found.ended), (0, Ended::OutOfRounds));
 }

@@ -160,7 +160,7 @@ impl Start {
         shell: Box<RawValue>,
         version: &str,
     ) -> Start {
-        let names = network.events().iter().flat_map(|event| &event.names);
+        let names = network.events().iter().flat_map(|event| event.names.iter());
         let internal = names.filter(|name| name.internal).map(|name| name.text.clone());
         let text = json::write(network);
         Start {

@@ -24,7 +24,7 @@ pub(crate) fn record(
         let truth = truth.get(event.index()).copied().flatten();
         let Some((time, row)) = row(dispatcher, event, all_happened[event.index()], truth) else { continue };
         let place = (time, dispatcher.order(event), sequence(event));
-        for name in &network.events()[event.index()].names {
+        for name in network.events()[event.index()].names.iter() {
             if internal || !name.internal {
                 rows.push((place, Row { event: name.text.clone(), ..row.clone() }));
             }

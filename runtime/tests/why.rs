@@ -8,7 +8,7 @@ mod oracle;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
-use kirk_network::{Duration, EventId, Network, Time};
+use kirk_network::{Duration, EventId, Name, Network, Time};
 use kirk_runtime::{Cause, Explained, How, Plan, Row, Simulation, Strategy, Temper, explained};
 use oracle::random::{self, Shape};
 
@@ -98,8 +98,10 @@ impl Record<'_> {
 fn partly_internal(seed: u64, network: Network) -> Network {
     let mut random = random::Random::new(seed);
     let mut events = network.events().to_vec();
-    for name in events.iter_mut().skip(1).flat_map(|event| &mut event.names) {
-        name.internal = seed % 8 >= 4 && random.within(0..=1) == 0;
+    for event in events.iter_mut().skip(1) {
+        let mut flagged =
+            |name: &Name| Name { internal: seed % 8 >= 4 && random.within(0..=1) == 0, ..name.clone() };
+        event.names = event.names.iter().map(&mut flagged).collect();
     }
     let (requirements, contingents) = (network.requirements().to_vec(), network.contingents().to_vec());
     Network::new(network.name().to_string(), network.origin(), events, requirements, contingents).unwrap()

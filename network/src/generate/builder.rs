@@ -22,7 +22,7 @@ impl Builder {
     }
 
     pub(super) fn event(&mut self, text: String) -> EventId {
-        self.events.push(Event { names: vec![Name { text, internal: false }] });
+        self.events.push(Event { names: [Name { text, internal: false }].into() });
         EventId(self.events.len() as u32 - 1)
     }
 

@@ -313,7 +313,7 @@ impl<'a> Reader<'a> {
         };
         SourceMap {
             requirements: elements.requirements.iter().map(|raw| [range(raw), range(raw)]).collect(),
-            contingents: elements.contingents.iter().map(range).collect(),
+            contingents: elements.contingents.iter().map(|raw| [range(raw), range(raw)]).collect(),
         }
     }
 

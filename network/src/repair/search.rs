@@ -19,6 +19,9 @@ use super::lever::Lever;
 use super::program::{Column, Outcome, solve};
 use super::{Allowed, Plan, Repair};
 
+/// A linear program of so many inequalities takes about as long as a verdict.
+const SMALL: usize = 32;
+
 /// No question takes more than this part of all rounds.
 const SHARES: usize = 4;
 
@@ -91,6 +94,51 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// Finds the conflicts that have no knob in common, one after the other, with the knobs of those before as far as they go. True
+    /// if these are all.
+    pub(super) fn gather(&mut self) -> bool {
+        let mut plan = Plan::new();
+        while let Some(changed) = self.carried_out(&plan) {
+            if !self.spend(1) {
+                self.gave_up = true;
+                return false;
+            }
+            let Ok(Answer::Not(clause)) = ask(self.network, &changed, &self.levers, &plan) else { break };
+            let grown = self.put_far(&mut plan, &clause);
+            self.learn(clause);
+            if !grown {
+                break;
+            }
+        }
+        true
+    }
+
+    /// Keeps a clause; without the alternatives that no amounts there are would keep.
+    fn learn(&mut self, mut clause: Clause) {
+        let most =
+            |(&knob, &factor): (&usize, &i64)| i128::from(factor.max(0)) * i128::from(self.knobs[knob].room);
+        clause.retain(|alternative| alternative.terms.iter().map(most).sum::<i128>() >= alternative.least);
+        self.clauses.push(clause);
+    }
+
+    /// Turns the knobs of a clause as far as they go; false if they were so far.
+    fn put_far(&self, plan: &mut Plan, clause: &Clause) -> bool {
+        let knobs: BTreeSet<usize> = clause.iter().flat_map(|it| it.terms.keys()).copied().collect();
+        let before = plan.len();
+        for knob in knobs {
+            let was = plan.insert(knob, self.knobs[knob].far(self.network));
+            if was.is_none() && !self.in_order(plan) {
+                plan.remove(&knob);
+            }
+        }
+        plan.len() > before
+    }
+
+    /// What there is to find was not all found.
+    pub(super) fn give_up(&mut self) {
+        self.gave_up = true;
+    }
+
     /// True if the rounds did not suffice for all that was asked.
     pub(super) fn gave_up(&self) -> bool {
         self.gave_up
@@ -124,11 +172,12 @@ impl<'a> Search<'a> {
         let reserve = self.rounds.saturating_sub(self.share);
         let mut open = BinaryHeap::from([Reverse((0_u128, 0_usize, Node::default()))]);
         let mut made = 0;
+        let gave_up = std::mem::take(&mut self.gave_up);
         while let Some(Reverse((cost, _, node))) = open.pop() {
             if self.is_no_cheaper(cost as f64, best.as_ref()) {
                 break;
             }
-            if self.rounds <= reserve || !self.spend(1) {
+            if self.rounds <= reserve || !self.spend(1 + self.clauses.len() / SMALL) {
                 self.gave_up = true;
                 break;
             }
@@ -139,11 +188,13 @@ impl<'a> Search<'a> {
                 }
             }
         }
+        let is_least = self.monotone && !self.gave_up;
+        self.gave_up |= gave_up;
         let best = best?;
         if self.settled.contains(&best) {
             return Some(best);
         }
-        let best = self.lowered(best);
+        let best = if is_least && self.would_show(&best) { best } else { self.lowered(best) };
         if !self.prove(&best) {
             self.gave_up = true;
             return None;
@@ -212,23 +263,28 @@ impl<'a> Search<'a> {
         (0..count).map(chosen).collect()
     }
 
-    /// Some plan, for want of a cheap one: every knob that has a part in a conflict as far as it goes, then each back as far as
+    /// True if a plan with any of its amounts a step lower would cost less by more than nobody can tell.
+    fn would_show(&self, plan: &Plan) -> bool {
+        let rounding = self.rounding(plan);
+        plan.iter().all(|(&knob, &amount)| {
+            let lever = &self.knobs[knob];
+            let step = amount - lever.down(amount - 1);
+            step as f64 * lever.weight as f64 > 2.0 * rounding
+        })
+    }
+
+    /// Some plan of at most so many knobs, for want of a cheap one: every knob that has a part in a conflict as far as it goes, then each back as far as
     /// the others allow.
-    pub(super) fn any(&mut self) -> Option<Plan> {
+    pub(super) fn any(&mut self, most: usize) -> Option<Plan> {
         const CONFLICTS: usize = 100;
         let mut plan = Plan::new();
         for _ in 0..CONFLICTS {
+            if plan.len() > most {
+                return None;
+            }
             let changed = self.carried_out(&plan)?;
             let Answer::Not(clause) = ask(self.network, &changed, &self.levers, &plan).ok()? else { break };
-            let knobs: BTreeSet<usize> = clause.iter().flat_map(|it| it.terms.keys()).copied().collect();
-            let before = plan.len();
-            for knob in knobs {
-                let was = plan.insert(knob, self.knobs[knob].far(self.network));
-                if was.is_none() && self.carried_out(&plan).is_none() {
-                    plan.remove(&knob);
-                }
-            }
-            if plan.len() == before {
+            if !self.put_far(&mut plan, &clause) {
                 return None;
             }
         }
@@ -382,7 +438,7 @@ impl<'a> Search<'a> {
                 Judged::Controllable
             }
             Ok(Answer::Not(clause)) => {
-                self.clauses.push(clause);
+                self.learn(clause);
                 Judged::Violates(self.clauses.len() - 1)
             }
             Err(_) => Judged::Unknown,
@@ -447,9 +503,12 @@ impl<'a> Search<'a> {
 
     /// The network with a plan carried out; `None` if that is none.
     fn carried_out(&self, plan: &Plan) -> Option<Network> {
-        let in_order = |clause: &Clause| clause.iter().any(|it| it.lacks(plan) <= 0);
-        let in_order = self.order.iter().all(in_order);
-        in_order.then(|| changed(self.network, &self.changes(plan)))?
+        self.in_order(plan).then(|| changed(self.network, &self.changes(plan)))?
+    }
+
+    /// True if with a plan carried out bounds are in order.
+    fn in_order(&self, plan: &Plan) -> bool {
+        self.order.iter().all(|clause| clause.iter().any(|it| it.lacks(plan) <= 0))
     }
 
     fn changes(&self, plan: &Plan) -> Vec<Change> {

@@ -145,8 +145,8 @@ pub fn network(seed: u64, shape: &Shape) -> Network {
     let mut number: Vec<u32> = (0..count as u32).collect();
     random.shuffle(&mut number);
     let id = |index: usize| EventId(number[index]);
-    let mut events = vec![Event { names: Vec::new() }; count];
-    events[id(0).index()].names.push(Name { text: "z".to_string(), internal: false });
+    let named = |text: String| Event { names: [Name { text, internal: false }].into() };
+    let mut events = vec![named("z".to_string()); count];
     let mut nominal = vec![0];
     let (mut free, mut contingent) = (vec![0], Vec::new());
     let (mut requirements, mut contingents) = (Vec::new(), Vec::new());
@@ -189,7 +189,7 @@ pub fn network(seed: u64, shape: &Shape) -> Network {
             free.push(index);
             format!("x{}", free.len() - 1)
         };
-        events[id(index).index()].names.push(Name { text, internal: false });
+        events[id(index).index()] = named(text);
     }
 
     // Some networks get tighter requirements than others, or the verdict depends on the number of requirements only.

@@ -74,8 +74,8 @@ fn sampling_mission() -> String {
     rmpl::write(&network)
 }
 
-/// What an editor shows of one activity in a mission of 2,000 lines: the first, one of Nature's, the last.
-#[divan::bench(args = ["(traverse", "(scan", "(message"])]
+/// What an editor shows of one activity in a mission of 2,000 lines.
+#[divan::bench(args = ["(scan", "(message"])]
 fn hover_of_an_activity(bencher: Bencher<'_, '_>, name: &str) {
     let text = sampling_mission();
     let (analysis, unjudged) = analyse(text.clone());

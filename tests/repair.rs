@@ -167,14 +167,14 @@ fn a_network_file_is_repaired_where_its_numbers_stand() {
 }
 
 #[test]
-fn five_hundred_windows_that_are_too_short_are_widened_at_once() {
+fn a_hundred_windows_that_are_too_short_are_widened_at_once() {
     use std::fmt::Write;
     let mut text = "(define-control-program listen () (declare (primitive)
   (duration (simple :lower-bound 5 :upper-bound 7 :max-observation-delay 1) :contingent t)))
 (define-control-program main () (sequence (:slack t)\n"
         .to_string();
-    for window in 0..500 {
-        let (most, before) = (8 + window % 4, 1 + window % 5);
+    for window in 0..100 {
+        let (most, before) = (8 + window % 2, 1 + window % 5);
         writeln!(
             text,
             "  (with-temporal-constraint (simple-temporal :upper-bound {most})
@@ -190,7 +190,7 @@ fn five_hundred_windows_that_are_too_short_are_widened_at_once() {
     let applied = kirk(&["repair", path, "--apply", "1"]);
     assert_eq!(applied.status.code(), Some(0), "{}", stderr(&applied));
     let changes = stdout(&applied).lines().count();
-    assert!(changes > 300, "{changes}");
+    assert!(changes >= 100, "{changes}");
     assert_eq!(status(&["check", path, "-q"]), Some(0));
 }
 

@@ -14,7 +14,7 @@ use crate::mission::{Judgement, Mission, Occurrence};
 use crate::view::View;
 
 /// Of missions with more events than this nobody would wait for the figures.
-const LARGE: usize = 20_000;
+const LARGE: usize = 5_000;
 
 /// What is said instead.
 const TOO_LARGE: &str = "how much is left is not measured here, as the mission is large: `kirk slack` does";

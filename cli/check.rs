@@ -59,7 +59,7 @@ fn inputs(arguments: &Check) -> Vec<(String, Input)> {
         false => load(file, selection),
     };
     let mut inputs: Vec<Input> = files.iter().enumerate().map(one).collect();
-    elsewhere::point_out(&mut inputs, selection);
+    elsewhere::point_out(&mut inputs);
     files.iter().map(|file| shown(file).to_string()).zip(inputs).collect()
 }
 

@@ -2,13 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use kirk_compiler::{Code, Diagnostic};
-
-use crate::args::Selection;
 use crate::input::Input;
 
 /// Says of every program that a file lacks and another one defines where it is, and how to check both as one.
-pub(crate) fn point_out(inputs: &mut [Input], selection: &Selection) {
+pub(crate) fn point_out(inputs: &mut [Input]) {
     if inputs.len() < 2 {
         return;
     }
@@ -22,33 +19,15 @@ pub(crate) fn point_out(inputs: &mut [Input], selection: &Selection) {
         }
     }
     for (index, input) in inputs.iter_mut().enumerate() {
-        let lacking = |diagnostic: &Diagnostic| match diagnostic.code {
-            Code::UnknownProgram => {
-                let source = input.sources.get(diagnostic.span.source as usize);
-                let word = source.map(|source| source.slice(diagnostic.span));
-                word.and_then(|word| word.rsplit(':').next()).map(str::to_lowercase)
-            }
-            Code::NoEntry => Some(selection.entry().to_lowercase()),
-            _ => None,
-        };
-        let found: Vec<Option<(String, String)>> = input
-            .diagnostics
-            .iter()
-            .map(|diagnostic| {
-                let name = lacking(diagnostic)?;
-                let (_, file) = homes.get(&name).filter(|(home, _)| *home != index)?;
-                Some((name, file.clone()))
-            })
-            .collect();
-        for (diagnostic, found) in input.diagnostics.iter_mut().zip(found) {
-            if let Some((name, file)) = found {
-                let said =
-                    format!("`{name}` is in {file}: `kirk check --together` takes the files as one program.");
-                diagnostic.help = Some(match diagnostic.help.take() {
-                    Some(help) => format!("{said} {help}"),
-                    None => said,
-                });
-            }
+        for diagnostic in &mut input.diagnostics {
+            let Some(name) = &diagnostic.lacks else { continue };
+            let Some((_, file)) = homes.get(name).filter(|(home, _)| *home != index) else { continue };
+            let said =
+                format!("`{name}` is in {file}: `kirk check --together` takes the files as one program.");
+            diagnostic.help = Some(match diagnostic.help.take() {
+                Some(help) => format!("{said} {help}"),
+                None => said,
+            });
         }
     }
 }

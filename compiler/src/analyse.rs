@@ -6,6 +6,7 @@ mod calls;
 mod classes;
 mod expression;
 mod names;
+pub(crate) mod problem;
 pub(crate) mod symbols;
 mod unused;
 
@@ -13,9 +14,6 @@ use std::collections::BTreeSet;
 
 use crate::Options;
 use crate::ast::{self, Ident};
-use crate::code::Code;
-use crate::diagnostic::{Diagnostic, Edit};
-use crate::form::clip;
 use crate::nearest::nearest;
 use crate::parse::DEFAULT_PACKAGE;
 use crate::problem::Problems;
@@ -23,9 +21,8 @@ use crate::source::Span;
 use crate::typed::{Body, Model, Program, Work};
 use expression::{Numbers, Resolver, named_numbers};
 use names::Names;
+use problem::{Limit, Problem};
 use symbols::{SymbolKind, Uses};
-
-pub(crate) use bounds::{negative, reversed};
 
 /// Resolves all names, checks all declarations, and finds the program to start from.
 pub(crate) fn analyse(program: &ast::Program, options: &Options, problems: &mut Problems) -> (Model, Uses) {
@@ -87,13 +84,8 @@ impl Analyser<'_> {
         let work = match (definition.primitive, definition.body.first()) {
             (true, None) => Work::Primitive(self.timing()),
             (true, Some(first)) => {
-                let message = format!("the primitive program `{}` has a body", clip(&definition.name.name));
-                self.problems.push(
-                    Diagnostic::error(Code::PrimitiveWithBody, first.span(), message)
-                        .primary("a primitive program has no body")
-                        .label(definition.name.span, "declared `(primitive)` here")
-                        .help("Take out `(primitive)` if the program consists of others, or the body if it does not."),
-                );
+                let program = definition.name.clone();
+                self.problems.push(Problem::PrimitiveWithBody { program, body: first.span() });
                 Work::Body(body)
             }
             (false, first) => {
@@ -119,32 +111,16 @@ impl Analyser<'_> {
 
     /// Checks what a program that is not primitive may not have, and must.
     fn composite(&mut self, has_body: bool) {
-        let definition = self.definition;
-        let name = clip(&definition.name.name);
-        match &definition.duration {
+        let ast::ControlProgram { name: program, duration, body, span, damaged, .. } = self.definition;
+        let program = program.clone();
+        self.problems.push(match duration {
             Some(duration) if has_body => {
-                let message = format!("`{name}` has a body and a duration");
-                let problem = Diagnostic::error(Code::DurationOfBody, duration.span, message)
-                    .primary("only a primitive program has a duration of its own")
-                    .help("To limit how long the body takes, put `(with-temporal-constraint (simple-temporal ...) ...)` around it.");
-                self.problems.push(around_the_body(problem, duration, &definition.body));
+                Problem::DurationOfBody { program, duration: duration.span, limit: limit(duration, body) }
             }
-            Some(_) if definition.damaged => {}
-            Some(duration) => self.problems.push(
-                Diagnostic::error(Code::NoBody, definition.name.span, format!("`{name}` is neither primitive nor has it a body"))
-                    .primary("nothing says what this program does")
-                    .label(duration.span, "it only has a duration")
-                    .help("Declare it primitive: `(declare (primitive) (duration ...))`.")
-                    .suggest("Declare it primitive", [Edit::before(duration.span, "(primitive) ")]),
-            ),
-            None if !has_body && !definition.damaged => self.problems.push(
-                Diagnostic::error(Code::NoBody, definition.name.span, format!("`{name}` has no body"))
-                    .primary("nothing says what this program does")
-                    .help("Give it a body, or declare it primitive: `(declare (primitive) (duration (simple :upper-bound 10)))`.")
-                    .suggest("Declare it primitive", [Edit::before(closing(definition.span), " (declare (primitive))")]),
-            ),
-            None => {}
-        }
+            _ if has_body || *damaged => return,
+            Some(duration) => Problem::OnlyADuration { program, duration: duration.span },
+            None => Problem::NoBody { program, definition: *span },
+        });
     }
 
     /// Takes down the names in what is no use otherwise, and says nothing about it.
@@ -168,30 +144,13 @@ impl Analyser<'_> {
     }
 }
 
-/// With the suggestion to limit the one form of a body as its program was to be, unless Nature was to decide.
-fn around_the_body(problem: Diagnostic, duration: &ast::DurationOf, body: &[ast::Body]) -> Diagnostic {
-    let (Some(form), true) = (body.first(), body.len() == 1) else { return problem };
-    if duration.contingent || duration.delay.is_some() {
-        return problem;
-    }
-    let start = Span { end: form.span().start, ..form.span() };
-    let mut edits = vec![
-        Edit::replace(duration.span, ""),
-        Edit::before(start, "(with-temporal-constraint (simple-temporal"),
-    ];
+/// What limits the one form of a body as its program was to be, unless Nature was to decide.
+fn limit(duration: &ast::DurationOf, body: &[ast::Body]) -> Option<Limit> {
+    let [form] = body else { return None };
     let ast::Bounds { lower, upper, .. } = &duration.bounds;
-    for (word, amount) in [("lower", lower), ("upper", upper)] {
-        if let Some(amount) = amount {
-            edits.extend([Edit::before(start, format!(" :{word}-bound ")), Edit::copy(start, amount.span)]);
-        }
-    }
-    edits.extend([Edit::before(start, ") "), Edit::after(form.span(), ")")]);
-    problem.suggest("Limit the body instead", edits)
-}
-
-/// The parenthesis at the end of a form.
-fn closing(form: Span) -> Span {
-    Span { start: form.end.saturating_sub(1), ..form }
+    let is_ours = !duration.contingent && duration.delay.is_none();
+    let place = |amount: &Option<ast::Amount>| amount.as_ref().map(|amount| amount.span);
+    is_ours.then(|| Limit { form: form.span(), lower: place(lower), upper: place(upper) })
 }
 
 /// Finds the program to start from.
@@ -205,22 +164,8 @@ fn entry(program: &ast::Program, names: &Names, options: &Options, problems: &mu
             let text = names.package("", &text).to_string();
             let has_programs = program.programs.iter().any(|p| p.home == text);
             if !defined.contains(&text.as_str()) && !has_programs {
-                let near = nearest(&text, defined.iter().copied());
-                let known = if defined.is_empty() {
-                    "It defines no package at all: leave `-P` out.".to_string()
-                } else {
-                    format!("It defines `{}`.", defined.join("`, `"))
-                };
-                problems.push(
-                    Diagnostic::error(
-                        Code::UnknownPackage,
-                        start,
-                        format!("the source defines no package `{}`", clip(&text)),
-                    )
-                    .primary("looked for it here")
-                    .help(known)
-                    .maybe_help(near.map(|near| format!("Did you mean `{near}`?"))),
-                );
+                let near = nearest(&text, defined.iter().copied()).map(str::to_string);
+                problems.push(Problem::NoSuchPackage { name: text, defined: owned(&defined), near });
                 return None;
             }
             vec![text]
@@ -228,17 +173,20 @@ fn entry(program: &ast::Program, names: &Names, options: &Options, problems: &mu
         None => match holders(program, &wanted).as_slice() {
             // If just one of them has the program, that is the one.
             [only] if defined.len() > 1 => vec![only.home.clone()],
-            [first, second, ..] => {
-                problems.push(several(program, first, second));
+            several @ [_, _, ..] => {
+                let places = several.iter().map(|p| (p.home.clone(), p.name.span)).collect();
+                problems.push(Problem::SeveralEntries { name: wanted, places });
                 return None;
             }
             _ if defined.len() > 1 => {
-                problems.push(not_chosen(program, &defined));
+                let second = program.packages.iter().find(|package| package.name.name == defined[1]);
+                let second = second.map_or(start, |package| package.name.span);
+                problems.push(Problem::NoPackageChosen { second, defined: owned(&defined) });
                 return None;
             }
             // One package or none, whether declared or only entered.
             _ => {
-                let mut homes: Vec<String> = defined.iter().map(ToString::to_string).collect();
+                let mut homes = owned(&defined);
                 homes.push(DEFAULT_PACKAGE.to_string());
                 homes.extend(program.programs.iter().map(|p| p.home.clone()));
                 homes
@@ -253,51 +201,21 @@ fn entry(program: &ast::Program, names: &Names, options: &Options, problems: &mu
     // Where nothing is defined and something is wrong, that is why.
     let nothing = program.programs.is_empty() && problems.has_errors();
     if found.is_none() && !nothing && !problems.has_lost(&wanted) {
-        let candidates: Vec<&str> = program
-            .programs
-            .iter()
-            .filter(|p| homes.contains(&p.home))
-            .map(|p| p.name.name.as_str())
-            .collect();
-        let at = program.programs.iter().rfind(|p| homes.contains(&p.home)).map_or(start, |p| p.name.span);
-        let help = match (nearest(&wanted, candidates.iter().copied()), candidates.len()) {
-            (Some(near), _) => format!("Did you mean `--entry {near}`?"),
-            (None, 0) => "A program is `(define-control-program main () ...)`.".to_string(),
-            (None, _) => format!(
-                "Define `{}`, or start from another program with `--entry NAME`: {}.",
-                clip(&wanted),
-                some_of(&candidates)
-            ),
-        };
-        problems.push(
-            Diagnostic::error(
-                Code::NoEntry,
-                at,
-                format!("there is no program `{}` to start from", clip(&wanted)),
-            )
-            .primary(if candidates.is_empty() {
-                "no program is defined here"
-            } else {
-                "the last program defined"
-            })
-            .help(help),
-        );
+        let there: Vec<&Ident> =
+            program.programs.iter().filter(|p| homes.contains(&p.home)).map(|p| &p.name).collect();
+        let candidates: Vec<&str> = there.iter().map(|name| name.name.as_str()).collect();
+        problems.push(Problem::NoEntry {
+            near: nearest(&wanted, candidates.iter().copied()).map(str::to_string),
+            name: wanted,
+            last: there.last().map_or(start, |name| name.span),
+            candidates: owned(&candidates),
+        });
     }
     found
 }
 
-/// The first names, as many as a line has room for.
-fn some_of(names: &[&str]) -> String {
-    let mut shown = String::new();
-    for (index, name) in names.iter().enumerate() {
-        let name = clip(name);
-        if index > 0 && shown.chars().count() + name.chars().count() > 60 {
-            return format!("{shown} and {} more", names.len() - index);
-        }
-        shown.push_str(if index > 0 { ", " } else { "" });
-        shown.push_str(&name);
-    }
-    shown
+fn owned(names: &[&str]) -> Vec<String> {
+    names.iter().map(ToString::to_string).collect()
 }
 
 /// The programs of a name, the first in each package.
@@ -305,37 +223,4 @@ fn holders<'a>(program: &'a ast::Program, wanted: &str) -> Vec<&'a ast::ControlP
     let mut seen = BTreeSet::new();
     let named = program.programs.iter().filter(|p| p.name.name == wanted);
     named.filter(|p| seen.insert(&p.home)).collect()
-}
-
-/// Programs to start from in several packages, of which what is outside any package counts as one.
-fn several(program: &ast::Program, first: &ast::ControlProgram, second: &ast::ControlProgram) -> Diagnostic {
-    let name = &first.name.name;
-    let homes: Vec<String> = holders(program, name).iter().map(|p| format!("`{}`", clip(&p.home))).collect();
-    let outside = [first, second].iter().any(|p| p.home == DEFAULT_PACKAGE);
-    let help = match outside {
-        true => format!(
-            "Choose the package with `-P`: {}. What is in no package is in `{DEFAULT_PACKAGE}`.",
-            homes.join(", ")
-        ),
-        false => format!("Choose the package with `-P`: {}.", homes.join(", ")),
-    };
-    Diagnostic::error(
-        Code::PackageNotChosen,
-        second.name.span,
-        format!("several packages have a program `{}` to start from, and none is chosen", clip(name)),
-    )
-    .primary("the second one")
-    .label(first.name.span, "the first one")
-    .help(help)
-}
-
-fn not_chosen(program: &ast::Program, defined: &[&str]) -> Diagnostic {
-    let second = program.packages.iter().find(|p| p.name.name == defined[1]);
-    Diagnostic::error(
-        Code::PackageNotChosen,
-        second.map_or(Span::default(), |package| package.name.span),
-        "the source defines several packages and none is chosen",
-    )
-    .primary("the second one")
-    .help(format!("Choose one with `-P`: `{}`.", defined.join("`, `")))
 }

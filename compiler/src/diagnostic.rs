@@ -69,6 +69,8 @@ pub struct Diagnostic {
     pub help: Option<String>,
     /// Changes that do it, each by itself.
     pub suggestions: Vec<Suggestion>,
+    /// The program that is missing, if that is the matter: another file may have it.
+    pub lacks: Option<String>,
 }
 
 impl Diagnostic {
@@ -83,6 +85,7 @@ impl Diagnostic {
             labels: Vec::new(),
             help: None,
             suggestions: Vec::new(),
+            lacks: None,
         }
     }
 
@@ -119,6 +122,13 @@ impl Diagnostic {
         self.help = text.or(self.help);
         self
     }
+
+    /// About a program of this name that is missing.
+    pub(crate) fn lacking(mut self, program: impl Into<String>) -> Diagnostic {
+        self.lacks = Some(program.into());
+        self
+    }
+
     /// With changes that put it right.
     pub fn suggest(mut self, title: impl Into<String>, edits: impl IntoIterator<Item = Edit>) -> Diagnostic {
         self.suggestions.push(Suggestion { title: title.into(), edits: edits.into_iter().collect() });

@@ -2,11 +2,8 @@
 
 use kirk_network::{Bound, Duration};
 
-use crate::ast::{Value, ValueKind};
+use crate::ast::{Ident, Limits, Value, ValueKind};
 use crate::calculate::{NoResult, scale};
-use crate::code::Code;
-use crate::diagnostic::Diagnostic;
-use crate::form::clip;
 use crate::source::Span;
 use crate::typed::{Expression, ExpressionKind};
 
@@ -16,11 +13,63 @@ pub(crate) const INFINITY: &str = ":infinity";
 /// How many repetitions one `dotimes` may ask for.
 pub(crate) const MAX_COUNT: u64 = crate::episode::MAX_EPISODES;
 
-/// What a number inside of a calculation is called.
-const NUMBER: &str = "part of a calculation";
+/// What is wrong with a number or an interval, and what is known about it.
+pub(crate) enum Problem {
+    /// Something else, where it is used, and the variable it is, whose value was given elsewhere.
+    NotANumber { role: Role, used: Span, variable: Option<String>, value: Value },
+    /// Nothing can be repeated so many times.
+    BadCount { number: Duration, span: Span, why: BadCount },
+    /// A calculation without a result.
+    NoResult { span: Span, why: NoResult },
+    /// A lower bound that is infinite.
+    InfiniteLower { role: Role, span: Span },
+    /// A negative bound, with the named number that is written there.
+    Negative { role: Role, value: Duration, span: Span, defined: Vec<Ident> },
+    /// The least is more than the most.
+    Reversed(Reversed),
+}
+
+/// An interval whose least is more than its most.
+pub(crate) struct Reversed {
+    pub(crate) limits: Limits,
+    pub(crate) least: Duration,
+    pub(crate) most: Duration,
+    pub(crate) lower: Span,
+    pub(crate) upper: Span,
+    pub(crate) written: Written,
+    /// The named numbers that are written there.
+    pub(crate) defined: Vec<Ident>,
+}
+
+/// What a number is to be.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Role {
+    Lower(Limits),
+    Upper(Limits),
+    Count,
+    /// What a name stands for.
+    Named,
+    /// Part of a calculation.
+    Operand,
+}
+
+/// Why something cannot be repeated so many times.
+pub(crate) enum BadCount {
+    Negative,
+    NotWhole,
+    TooMany,
+}
+
+/// How an interval is written, as far as that says what is wrong with it.
+pub(crate) enum Written {
+    Both,
+    WithoutLower,
+    /// With variables, whose values are given elsewhere.
+    Computed,
+}
 
 /// What is wrong; `None` if that has been reported.
-pub(crate) type Wrong = Option<Box<Diagnostic>>;
+pub(crate) type Wrong = Option<Box<Problem>>;
 
 /// The value, or what is wrong with it.
 pub(crate) fn evaluate(expression: &Expression, variables: &[Value]) -> Result<Value, Wrong> {
@@ -29,104 +78,61 @@ pub(crate) fn evaluate(expression: &Expression, variables: &[Value]) -> Result<V
         ExpressionKind::Value(kind) => kind.clone(),
         ExpressionKind::Variable(index, _) => return variables.get(*index).cloned().ok_or(None),
         ExpressionKind::Error => return Err(None),
-        ExpressionKind::Scaled(unit, inner) => {
-            let number = number(inner, variables, NUMBER)?;
-            ValueKind::Number(scale(number, *unit).map_err(|why| Some(no_result(span, why).into()))?)
-        }
+        ExpressionKind::Scaled(unit, inner) => ValueKind::Number(
+            scale(number(inner, variables, Role::Operand)?, *unit).map_err(no_result(span))?,
+        ),
         ExpressionKind::Calculated(operator, parts) => {
             let numbers: Result<Vec<Duration>, _> =
-                parts.iter().map(|part| number(part, variables, NUMBER)).collect();
-            ValueKind::Number(operator.apply(&numbers?).map_err(|why| Some(no_result(span, why).into()))?)
+                parts.iter().map(|part| number(part, variables, Role::Operand)).collect();
+            ValueKind::Number(operator.apply(&numbers?).map_err(no_result(span))?)
         }
     };
     Ok(Value { kind, span })
 }
 
-/// The value as a bound, called `what` in messages.
-pub(crate) fn bound(expression: &Expression, variables: &[Value], what: &str) -> Result<Bound, Wrong> {
+/// The value as a bound.
+pub(crate) fn bound(expression: &Expression, variables: &[Value], role: Role) -> Result<Bound, Wrong> {
     let value = evaluate(expression, variables)?;
     match &value.kind {
         ValueKind::Symbol(name) if name == INFINITY => Ok(Bound::Infinite),
         ValueKind::Number(number) => Ok(Bound::Finite(*number)),
-        _ => Err(Some(not_a_number(expression, &value, what).into())),
+        _ => Err(not_a_number(expression, value, role)),
     }
 }
 
 /// The value as a number of repetitions.
 pub(crate) fn count(expression: &Expression, variables: &[Value]) -> Result<u64, Wrong> {
-    let what = "the number of repetitions";
-    let number = number(expression, variables, what)?;
-    let bad = |code, problem: &str| {
-        Diagnostic::error(code, expression.span, format!("{what} is {number}, which is {problem}"))
-            .primary("a whole number was expected, and not a large one")
-    };
+    let number = number(expression, variables, Role::Count)?;
+    let bad = |why| Err(Some(Problem::BadCount { number, span: expression.span, why }.into()));
     if number < Duration::ZERO {
-        let help = "To leave the body out, repeat it 0 times.";
-        return Err(Some(bad(Code::BadCount, "negative").help(help).into()));
+        return bad(BadCount::Negative);
     }
     if number.as_micros() % 1_000_000 != 0 {
-        let help = "A body is repeated 0, 1, 2, ... times. To wait for some time, use `(delay 1.5 1.5)`.";
-        return Err(Some(bad(Code::BadCount, "no whole number").help(help).into()));
+        return bad(BadCount::NotWhole);
     }
     let times = (number.as_micros() / 1_000_000).unsigned_abs();
     if times > MAX_COUNT {
-        let help = "Every repetition is unfolded before the mission starts. Is this a number of seconds?";
-        let problem = bad(Code::TooManyEpisodes, &format!("more than {MAX_COUNT}"));
-        return Err(Some(problem.help(help).into()));
+        return bad(BadCount::TooMany);
     }
     Ok(times)
 }
 
-/// The value as a number, called `what` in messages.
-fn number(expression: &Expression, variables: &[Value], what: &str) -> Result<Duration, Wrong> {
+fn number(expression: &Expression, variables: &[Value], role: Role) -> Result<Duration, Wrong> {
     let value = evaluate(expression, variables)?;
     match value.kind {
         ValueKind::Number(number) => Ok(number),
-        _ => Err(Some(not_a_number(expression, &value, what).into())),
+        _ => Err(not_a_number(expression, value, role)),
     }
 }
 
-fn not_a_number(expression: &Expression, value: &Value, what: &str) -> Diagnostic {
-    let message = match (&expression.kind, &value.kind) {
-        (_, ValueKind::Name(_, name)) => match what {
-            NUMBER => format!("nothing says what `{}` is, so kirk cannot calculate with it", clip(name)),
-            _ => format!("nothing says what `{}` is, so {what} is unknown", clip(name)),
-        },
-        (_, ValueKind::Symbol(name)) if name == INFINITY && what == NUMBER => {
-            "`:infinity` is no number to calculate with".into()
-        }
-        (_, ValueKind::Symbol(name)) if name == INFINITY => format!("{what} cannot be `:infinity`"),
-        (ExpressionKind::Variable(_, name), _) => {
-            format!("`{}` is not a number here, so it cannot be {what}", clip(name))
-        }
-        _ if what == NUMBER => "kirk can calculate with numbers only".to_string(),
-        _ => format!("{what} is not a number"),
+fn not_a_number(expression: &Expression, value: Value, role: Role) -> Wrong {
+    let variable = match &expression.kind {
+        ExpressionKind::Variable(_, name) => Some(name.clone()),
+        _ => None,
     };
-    let problem =
-        Diagnostic::error(Code::NotANumber, value.span, message).primary("a number was expected here");
-    match &expression.kind {
-        ExpressionKind::Variable(_, name) => problem
-            .label(expression.span, format!("`{}` is used as {what} here", clip(name)))
-            .help("Call the program with a number of seconds."),
-        _ => problem
-            .help("Write a number (`15`, `1.5`), a unit (`(minutes 5)`), or a name that stands for one."),
-    }
+    Some(Problem::NotANumber { role, used: expression.span, variable, value }.into())
 }
 
-fn no_result(span: Span, why: NoResult) -> Diagnostic {
-    match why {
-        NoResult::NotExact => {
-            Diagnostic::error(Code::NotExact, span, "the result is not a whole number of microseconds")
-                .primary("this would have to be rounded")
-                .help(
-                    "Kirk calculates exactly and never rounds. Multiply before you divide: `(/ (* 2 x) 3)`.",
-                )
-        }
-        NoResult::TooLarge => Diagnostic::error(Code::TooLarge, span, "the result is too large")
-            .primary("more than 10 billion seconds")
-            .help("For \"no limit\" leave the bound out or write `:infinity`."),
-        NoResult::DividedByZero => {
-            Diagnostic::error(Code::NotANumber, span, "this divides by zero").primary("there is no result")
-        }
-    }
+fn no_result(span: Span) -> impl Fn(NoResult) -> Wrong {
+    move |why| Some(Problem::NoResult { span, why }.into())
 }

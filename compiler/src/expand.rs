@@ -4,19 +4,19 @@ mod interval;
 mod labels;
 mod limits;
 mod name;
+pub(crate) mod problem;
 mod scope;
 
 use kirk_network::{Bound, Duration};
 
 use crate::ast::{Condition, Ident, Limits, Value, ValueKind};
-use crate::code::Code;
-use crate::diagnostic::Diagnostic;
 use crate::episode::{Episode, Interval, Kind, MAX_EPISODES};
-use crate::form::clip;
 use crate::problem::Problems;
 use crate::source::Span;
 use crate::typed::{Between, Body, EventOf, Expression, Model, Program, Timing, Work};
 use name::Occurrences;
+use problem::{Problem, Unfolded};
+pub(crate) use scope::source;
 use scope::{Named, Scopes, Target};
 
 /// The tree of episodes of the program to start from. Expects a model without errors: in particular no recursion.
@@ -27,16 +27,8 @@ pub(crate) fn expand(model: &Model, problems: &mut Problems) -> Option<Episode> 
     }
     let program = &model.programs[entry];
     if !program.parameters.is_empty() {
-        let names: Vec<String> = program.parameters.iter().map(|p| format!("`{}`", clip(&p.name))).collect();
-        problems.push(
-            Diagnostic::note(
-                Code::FreeParameters,
-                program.name.span,
-                format!("`{}` is started without arguments", clip(&program.name.name)),
-            )
-            .primary(format!("nothing is known about {}", names.join(" and ")))
-            .help("That does no harm as long as no time depends on them. To start with arguments, call it from a program `main`."),
-        );
+        let (program, parameters) = (program.name.clone(), program.parameters.clone());
+        problems.push(Problem::FreeParameters { program, parameters });
     }
     let free =
         |name: &crate::ast::Ident| Value { kind: ValueKind::Name(None, name.name.clone()), span: name.span };
@@ -129,13 +121,11 @@ impl<'a> Expander<'a> {
         episode.contingent = timing.contingent;
         if timing.contingent {
             if episode.duration.as_ref().is_some_and(|duration| duration.upper == Bound::Infinite) {
-                let name = clip(&frame.program.name.name);
-                let message = format!("the contingent duration of `{name}` has no upper bound");
-                self.problems.push(
-                    Diagnostic::error(Code::ContingentUnbounded, timing.bounds.upper.span, message)
-                        .primary("Nature could take forever")
-                        .label(frame.call, "with the arguments of this call"),
-                );
+                self.problems.push(Problem::ContingentUnbounded {
+                    program: frame.program.name.clone(),
+                    upper: timing.bounds.upper.span,
+                    call: frame.call,
+                });
             }
             let delay = self.interval(&timing.delay, frame, Limits::ObservationDelay);
             if delay.lower != Duration::ZERO || delay.upper != Bound::Finite(Duration::ZERO) {
@@ -232,7 +222,7 @@ impl<'a> Expander<'a> {
         for index in 0..count {
             self.repetitions += 1;
             if self.repetitions > MAX_EPISODES {
-                self.give_up(operator, "repetitions", Some(frame.call));
+                self.give_up(Unfolded::Repetitions, operator, Some(frame.call));
             }
             if self.exhausted {
                 break;
@@ -282,7 +272,7 @@ impl<'a> Expander<'a> {
         let Between { from, to, bounds } = between;
         self.repetitions += 1;
         if self.repetitions > MAX_EPISODES {
-            self.give_up(from.span, "constraints", Some(frame.call));
+            self.give_up(Unfolded::Constraints, from.span, Some(frame.call));
         }
         let interval = self.signed_interval(bounds, frame, Limits::Duration);
         let mut arguments =
@@ -299,23 +289,15 @@ impl<'a> Expander<'a> {
     fn blank(&mut self, name: String, kind: Kind, span: Span) -> Episode {
         self.episodes += 1;
         if self.episodes > MAX_EPISODES {
-            self.give_up(span, "episodes", None);
+            self.give_up(Unfolded::Episodes, span, None);
         }
         blank(name, kind, span)
     }
 
-    fn give_up(&mut self, span: Span, what: &str, call: Option<Span>) {
-        if std::mem::replace(&mut self.exhausted, true) {
-            return;
+    fn give_up(&mut self, what: Unfolded, span: Span, call: Option<Span>) {
+        if !std::mem::replace(&mut self.exhausted, true) {
+            self.problems.push(Problem::TooMany { what, span, call });
         }
-        let message = format!("the mission unfolds to more than {MAX_EPISODES} {what}");
-        let problem = Diagnostic::error(Code::TooManyEpisodes, span, message)
-            .primary("this is one too many")
-            .help("Every call is an episode of its own, and every repetition of a `dotimes` is unfolded.");
-        self.problems.push(match call {
-            Some(call) => problem.label(call, "with the arguments of this call"),
-            None => problem,
-        });
     }
 }
 

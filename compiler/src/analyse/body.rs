@@ -1,14 +1,12 @@
 //! The forms of a body: what is called, with which values, and which events are meant.
 
+use super::problem::{Missing, Problem};
 use super::symbols::SymbolKind;
 use super::{Analyser, Variable};
 use crate::ast::{self, Ident, Limits};
-use crate::code::Code;
-use crate::diagnostic::{Diagnostic, Edit};
 use crate::evaluate;
-use crate::form::clip;
 use crate::nearest::nearest;
-use crate::parse::{Instead, instead_of_operator};
+use crate::parse::instead_of_operator;
 use crate::source::Span;
 use crate::typed::{Between, Body, EventOf, Expression, ExpressionKind};
 
@@ -147,33 +145,20 @@ impl Analyser<'_> {
         Some(EventOf { end: event.end, name, program, is_occurrence, arguments, span: event.span })
     }
 
-    fn unknown_event(&mut self, ident: &Ident) {
+    fn unknown_event(&mut self, name: &Ident) {
         let labels = self.uses.labels().map(|label| label.name.as_str());
         let programs = self.program.programs.iter().map(|program| program.name.name.as_str());
-        let name = clip(&ident.name);
-        let numbered = ident.name.split_once('#').map(|(program, _)| program);
-        let numbered = numbered.filter(|program| programs.clone().any(|name| name == *program));
-        let near = nearest(&ident.name, labels.chain(programs));
-        let problem =
-            Diagnostic::error(Code::UnknownLabel, ident.span, format!("nothing is labelled `{name}`"))
-                .primary("neither a label nor a program");
-        self.problems.push(match (numbered, near) {
-            (Some(program), _) => {
-                let shown = clip(program);
-                problem.help(format!(
-                    "The second occurrence is `{shown}#2`. For the first of several, give it a name: `(label x ({shown} ...))`."
-                ))
-            }
-            (None, Some(near)) => problem.meant(ident.span, Some(ident.with_name(near))),
-            (None, None) => problem.help(format!("Name the occurrence you mean: `(label {name} (...))`.")),
-        });
+        let numbered = name.name.split_once('#').map(|(program, _)| program);
+        let occurrence_of = numbered.filter(|program| programs.clone().any(|name| name == *program));
+        let near = nearest(&name.name, labels.chain(programs)).map(str::to_string);
+        let occurrence_of = occurrence_of.map(str::to_string);
+        self.problems.push(Problem::UnknownEvent { name: name.clone(), occurrence_of, near });
     }
 
     #[inline(never)]
     fn call(&mut self, call: &ast::Call) -> Option<Body> {
         let home = &self.definition.home;
         let Some(program) = self.names.program(&call.program, home) else {
-            let span = call.program.span;
             let look = |it: &mut Self| call.arguments.iter().for_each(|value| drop(it.argument(value)));
             // What follows a word of another language is not its arguments.
             match instead_of_operator(&call.program.name) {
@@ -183,11 +168,16 @@ impl Analyser<'_> {
             if self.problems.has_lost(&call.program.name) {
                 return None;
             }
-            let problem = match self.problems.wants(span.source) {
-                true => self.names.unknown_program(&call.program, home),
-                false => Diagnostic::error(Code::UnknownProgram, span, ""),
-            };
-            self.problems.push(self.cured(call, problem));
+            let create = Missing { parameters: call.arguments.len(), after: self.definition.span };
+            self.problems.push(match self.problems.wants(call.program.span.source) {
+                true => self.names.unknown_program(call, home, create),
+                false => Problem::UnknownProgram {
+                    name: call.program.clone(),
+                    elsewhere: None,
+                    near: None,
+                    create,
+                },
+            });
             return None;
         };
         self.uses.global(SymbolKind::Program(program), call.program.span);
@@ -196,59 +186,20 @@ impl Analyser<'_> {
         let unread =
             |argument: &ast::Argument| matches!(argument, ast::Argument::Amount(it) if it.kind.is_error());
         if wanted != given && !target.damaged && !call.arguments.iter().any(unread) {
-            let count = |n: usize| if n == 1 { "1 argument".to_string() } else { format!("{n} arguments") };
-            let name = clip(&target.name.name);
-            self.problems.push(
-                Diagnostic::error(
-                    Code::WrongArguments,
-                    call.span,
-                    format!("`{name}` takes {}, not {given}", count(wanted)),
-                )
-                .primary(format!("{} here", count(given)))
-                .label(target.name.span, "defined here")
-                .help(format!("Call it as `{}`.", shape(target))),
-            );
+            self.problems.push(Problem::WrongArguments {
+                call: call.span,
+                given,
+                program: target.name.clone(),
+                parameters: target.parameters.clone(),
+            });
         }
         let arguments = call.arguments.iter().map(|value| self.argument(value)).collect();
         Some(Body::Call { program, arguments, span: call.span })
     }
 
-    /// A call of something unknown, with what is certain to put it right.
-    fn cured(&self, call: &ast::Call, problem: Diagnostic) -> Diagnostic {
-        let name = &call.program;
-        if problem.code == Code::UnknownProgram && name.package.is_none() {
-            let text = missing_program(call);
-            return problem.suggest(
-                format!("Create the program `{}`", name.name),
-                [Edit::after(self.definition.span, text)],
-            );
-        }
-        let instead = instead_of_operator(&name.name).filter(|_| name.package.is_none());
-        match instead.and_then(Instead::word) {
-            Some("delay") if !(1..=2).contains(&call.arguments.len()) => problem,
-            Some(word) => problem.change(name.span, word),
-            None => problem,
-        }
-    }
-
     fn argument(&mut self, written: &ast::Argument) -> Expression {
         self.resolver().argument(written)
     }
-}
-
-/// A definition of the program that is called.
-fn missing_program(call: &ast::Call) -> String {
-    let parameters: Vec<String> = (1..=call.arguments.len()).map(|number| format!("x{number}")).collect();
-    format!(
-        "\n\n(define-control-program {} ({})\n  (declare (primitive)\n    (duration (simple :lower-bound 5 :upper-bound 10))))",
-        call.program.name,
-        parameters.join(" ")
-    )
-}
-
-fn shape(target: &ast::ControlProgram) -> String {
-    let words = std::iter::once(&target.name).chain(&target.parameters).map(|ident| clip(&ident.name));
-    format!("({})", words.collect::<Vec<_>>().join(" "))
 }
 
 /// The program that `a#2` is an occurrence of: `a`. The first one has no number.

@@ -1,10 +1,8 @@
 //! Who calls whom: no program may call itself, and one that nobody calls is probably a slip.
 
+use super::problem::{MOST_TOLD, Problem};
 use crate::Options;
 use crate::ast;
-use crate::code::Code;
-use crate::diagnostic::Diagnostic;
-use crate::form::clip;
 use crate::problem::Problems;
 use crate::source::Span;
 use crate::typed::{Model, Program, Work};
@@ -34,8 +32,10 @@ pub(super) fn check_recursion(model: &Model, problems: &mut Problems) {
                 }
                 1 => {
                     let from = walk.iter().position(|(program, _)| *program == target).unwrap_or(0);
-                    let cycle: Vec<usize> = walk[from..].iter().map(|(program, _)| *program).collect();
-                    problems.push(recursion(model, &cycle, span));
+                    let circle =
+                        walk[from..].iter().map(|(program, _)| model.programs[*program].name.clone());
+                    let (length, circle) = (circle.len(), circle.take(MOST_TOLD).collect());
+                    problems.push(Problem::Recursion { circle, length, call: span });
                 }
                 _ => {}
             }
@@ -76,51 +76,16 @@ pub(super) fn check_use(
             open.extend(calls[program].iter().map(|(target, _)| *target));
         }
     }
-    let entry_name = clip(&model.programs[entry].name.name);
-    // Other sources are libraries: nobody uses all of one.
-    let source = model.programs[entry].name.span.source;
-    let here = model.programs.iter().zip(&used);
-    let homes = program.programs.iter().map(|program| program.home.as_str());
-    for ((unused, _), home) in
-        here.zip(homes).filter(|((program, used), _)| !**used && program.name.span.source == source)
-    {
-        let name = clip(&unused.name.name);
-        let choice = match home == program.programs[entry].home {
-            true => format!("--entry {name}"),
-            false => format!("-P {} --entry {name}", clip(home)),
-        };
-        problems.push(
-            Diagnostic::warning(
-                Code::NeverUsed,
-                unused.name.span,
-                format!("the program `{name}` is never used"),
-            )
-            .primary("defined here")
-            .help(format!("Nothing that `{entry_name}` does leads to it. To start from it, use `{choice}`.")),
-        );
+    let start = &model.programs[entry].name;
+    let homes = program.programs.iter().map(|program| &program.home);
+    for ((unused, used), home) in model.programs.iter().zip(used).zip(homes) {
+        // Other sources are libraries: nobody uses all of one.
+        if !used && unused.name.span.source == start.span.source {
+            problems.push(Problem::NeverCalled {
+                program: unused.name.clone(),
+                entry: start.name.clone(),
+                package: (*home != program.programs[entry].home).then(|| home.clone()),
+            });
+        }
     }
-}
-
-fn recursion(model: &Model, cycle: &[usize], call: Span) -> Diagnostic {
-    let name = |index: usize| clip(&model.programs[index].name.name);
-    let first = name(cycle[0]);
-    let mut path: Vec<String> = cycle.iter().take(8).map(|index| name(*index)).collect();
-    if cycle.len() > 8 {
-        path.push("...".to_string());
-    }
-    path.push(first.clone());
-    let mut problem = Diagnostic::error(Code::Recursion, call, format!("the program `{first}` calls itself"))
-        .primary(if cycle.len() == 1 {
-            "it is called from its own body"
-        } else {
-            "this call closes the circle"
-        })
-        .help(format!(
-            "{}: a mission that never ends cannot be scheduled. To repeat something, use `dotimes`.",
-            path.join(" -> ")
-        ));
-    for index in cycle.iter().take(8) {
-        problem = problem.label(model.programs[*index].name.span, "on the circle");
-    }
-    problem
 }

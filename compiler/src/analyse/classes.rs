@@ -2,14 +2,11 @@
 
 use super::Analyser;
 use super::names::Names;
+use super::problem::{Allowed, MOST_TOLD, MOST_VALUES, Problem};
 use super::symbols::{SymbolKind, Uses};
 use crate::ast::{Class, Condition, Ident, Program, Slot, SlotOf, Type, Value, ValueKind};
-use crate::code::Code;
-use crate::diagnostic::Diagnostic;
-use crate::form::{Form, FormKind, clip, write};
 use crate::nearest::nearest;
 use crate::problem::Problems;
-use crate::source::Span;
 
 /// Types of Lisp that kirk does not look into.
 const LISP_TYPES: [&str; 24] = [
@@ -48,15 +45,8 @@ pub(super) fn check(program: &Program, names: &Names, uses: &mut Uses, problems:
                 None if parent.name == "standard-object" => {}
                 None => {
                     let known = program.classes.iter().map(|class| class.name.name.as_str());
-                    problems.push(
-                        Diagnostic::error(
-                            Code::UnknownClass,
-                            parent.span,
-                            format!("the class `{}` is not defined", clip(&parent.name)),
-                        )
-                        .primary("extended here")
-                        .meant(parent.span, nearest(&parent.name, known).map(|near| parent.with_name(near))),
-                    );
+                    let near = nearest(&parent.name, known).map(str::to_string);
+                    problems.push(Problem::UnknownClass { name: parent.clone(), near });
                 }
             }
         }
@@ -70,16 +60,7 @@ pub(super) fn check(program: &Program, names: &Names, uses: &mut Uses, problems:
 impl<'a> Analyser<'a> {
     /// Checks a condition or effect of the program at hand, and notes that kirk does not plan with it.
     pub(super) fn condition(&mut self, condition: &Condition) {
-        let name = &self.definition.name;
-        self.problems.push(
-            Diagnostic::note(
-                Code::NotPlannedWith,
-                name.span,
-                format!("the conditions and effects of `{}` are not planned with", clip(&name.name)),
-            )
-            .primary("its conditions are read and checked, and kept with the episode")
-            .help("Kirk does not plan: it takes for granted that the program as written brings about what it requires."),
-        );
+        self.problems.push(Problem::NotPlannedWith { program: self.definition.name.clone() });
         let mut open = vec![condition];
         while let Some(condition) = open.pop() {
             match condition {
@@ -116,21 +97,10 @@ impl<'a> Analyser<'a> {
         self.uses.accessor(&slot.accessor);
         if found.is_empty() && !self.problems.has_lost(wanted) {
             let known = all().flat_map(|slot| &slot.accessors).map(|name| name.name.as_str());
-            let slot_itself = all().find(|slot| slot.name.name == *wanted);
-            let problem = Diagnostic::error(
-                Code::UnknownAccessor,
-                slot.accessor.span,
-                format!("no class has an accessor `{}`", clip(wanted)),
-            )
-            .primary("not the `:reader` or `:accessor` of any slot");
-            self.problems.push(match slot_itself {
-                Some(_) => {
-                    problem.help("There is a slot of this name, but it has no `:reader` or `:accessor`.")
-                }
-                None => {
-                    let near = nearest(wanted, known).map(|near| slot.accessor.with_name(near));
-                    problem.meant(slot.accessor.span, near)
-                }
+            self.problems.push(Problem::UnknownAccessor {
+                name: slot.accessor.clone(),
+                is_slot: all().any(|slot| slot.name.name == *wanted),
+                near: nearest(wanted, known).map(str::to_string),
             });
         }
         self.object(&slot.object, false);
@@ -150,17 +120,15 @@ impl<'a> Analyser<'a> {
         }
         let known = parameter.is_some() || is_value && number.is_some();
         if !known && (is_value || package.is_none()) {
-            let problem = self.unknown(object.span, name);
-            self.problems.push(problem);
+            let definition = self.definition;
+            let parameters = definition.parameters.iter().map(|parameter| parameter.name.as_str());
+            self.problems.push(Problem::UnknownParameter {
+                name: name.clone(),
+                span: object.span,
+                program: definition.name.clone(),
+                near: nearest(name, parameters).map(str::to_string),
+            });
         }
-    }
-
-    fn unknown(&self, span: Span, name: &str) -> Diagnostic {
-        let definition = self.definition;
-        let parameters = definition.parameters.iter().map(|parameter| parameter.name.as_str());
-        Diagnostic::error(Code::UnknownName, span, format!("nothing is called `{}`", clip(name)))
-            .primary(format!("not a parameter of `{}`", clip(&definition.name.name)))
-            .meant(span, nearest(name, parameters))
     }
 }
 
@@ -196,16 +164,9 @@ fn circles(program: &Program, names: &Names, problems: &mut Problems) {
                 continue;
             }
             let from = walk.iter().position(|(class, _)| *class == target).unwrap_or(0);
-            let circle = walk[from..].iter().map(|(class, _)| &program.classes[*class].name);
-            let mut path: Vec<String> = circle.clone().take(8).map(|name| clip(&name.name)).collect();
-            path.push(clip(&program.classes[target].name.name));
-            let message = format!("the class `{}` extends itself", path[0]);
-            let problem = Diagnostic::error(Code::CircularClass, parent.span, message)
-                .primary("this closes the circle")
-                .help(format!("{}: take one of the superclasses out.", path.join(" -> ")));
-            problems.push(
-                circle.take(8).fold(problem, |problem, name| problem.label(name.span, "on the circle")),
-            );
+            let circle = walk[from..].iter().map(|(class, _)| program.classes[*class].name.clone());
+            problems
+                .push(Problem::CircularClass { circle: circle.take(MOST_TOLD).collect(), at: parent.span });
         }
     }
 }
@@ -228,15 +189,8 @@ fn check_slot(
                 None => {
                     let classes = program.classes.iter().map(|class| class.name.name.as_str());
                     let known = LISP_TYPES.into_iter().chain(classes);
-                    problems.push(
-                        Diagnostic::warning(
-                            Code::UnknownType,
-                            name.span,
-                            format!("`{}` is not a type kirk knows", clip(&name.name)),
-                        )
-                        .primary("values of this slot are not checked")
-                        .meant(name.span, nearest(&name.name, known).map(|near| name.with_name(near))),
-                    );
+                    let near = nearest(&name.name, known).map(str::to_string);
+                    problems.push(Problem::UnknownType { name: name.clone(), near });
                 }
             },
             Type::Member(_) | Type::Anything => {}
@@ -284,41 +238,24 @@ fn same_name(member: &Value, value: &Value) -> bool {
     matches!((&member.kind, &value.kind), (ValueKind::Name(_, a), ValueKind::Symbol(b)) if a == b)
 }
 
-fn wrong_type(slot: &Slot, value: &Value) -> Diagnostic {
-    let allowed = match &slot.kind {
+fn wrong_type(slot: &Slot, value: &Value) -> Problem {
+    let (allowed, near) = match &slot.kind {
         Some(Type::Member(values)) => {
-            let shown: Vec<String> = values.iter().take(12).map(|value| show(&value.kind)).collect();
-            format!("one of {}", shown.join(", "))
-        }
-        Some(Type::Named(name)) => format!("a value of type `{}`", clip(&name.name)),
-        _ => "a value of another type".to_string(),
-    };
-    let near = match (&slot.kind, &value.kind) {
-        (Some(Type::Member(values)), ValueKind::Text(text)) => {
-            let texts = values.iter().filter_map(|value| match &value.kind {
-                ValueKind::Text(text) => Some(text.as_str()),
+            let near = match &value.kind {
+                ValueKind::Text(text) => nearest(text, values.iter().filter_map(text_of)).map(str::to_string),
                 _ => None,
-            });
-            nearest(text, texts)
+            };
+            (Allowed::OneOf(values.iter().take(MOST_VALUES).map(|value| value.kind.clone()).collect()), near)
         }
-        _ => None,
+        Some(Type::Named(name)) => (Allowed::OfType(name.clone()), None),
+        _ => (Allowed::Other, None),
     };
-    let message = format!("the slot `{}` cannot be {}", clip(&slot.name.name), show(&value.kind));
-    let problem = Diagnostic::error(Code::WrongType, value.span, message)
-        .primary(format!("{allowed} was expected"))
-        .label(slot.name.span, "the slot is defined here");
-    match near.map(|near| write(&Form { span: value.span, kind: FormKind::String(near.to_string()) })) {
-        Some(near) => problem.help(format!("Did you mean {near}?")).change(value.span, near),
-        None => problem,
-    }
+    Problem::WrongType { slot: slot.name.clone(), allowed, value: value.clone(), near }
 }
 
-fn show(kind: &ValueKind) -> String {
-    match kind {
-        ValueKind::Number(number) => number.to_string(),
-        ValueKind::Text(text) => format!("\"{}\"", clip(text)),
-        ValueKind::True => "t".to_string(),
-        ValueKind::Nil => "nil".to_string(),
-        ValueKind::Symbol(name) | ValueKind::Name(_, name) | ValueKind::Other(name) => clip(name),
+fn text_of(value: &Value) -> Option<&str> {
+    match &value.kind {
+        ValueKind::Text(text) => Some(text),
+        _ => None,
     }
 }

@@ -4,14 +4,11 @@ use kirk_network::Bound;
 
 use super::Variable;
 use super::names::Names;
+use super::problem::Problem;
 use super::symbols::{SymbolKind, Uses};
 use crate::ast::{self, AmountKind, Argument, Ident, Value, ValueKind};
-use crate::code::Code;
-use crate::diagnostic::Diagnostic;
-use crate::evaluate::{self, INFINITY};
-use crate::form::clip;
+use crate::evaluate::{self, INFINITY, Role};
 use crate::nearest::nearest;
-use crate::parse::suffixed;
 use crate::problem::Problems;
 use crate::typed::{AmountValue, Expression, ExpressionKind};
 
@@ -30,7 +27,7 @@ pub(super) fn named_numbers(
         let home = &definition.home;
         let mut resolver = Resolver { names, numbers: &numbers, program, home, scope: &[], uses, problems };
         let expression = resolver.amount(&definition.value);
-        numbers.push(match resolver.known(&expression, "this value") {
+        numbers.push(match resolver.known(&expression, Role::Named) {
             AmountValue::Known(bound) => Some(bound),
             _ => None,
         });
@@ -82,11 +79,11 @@ impl Resolver<'_> {
         }
     }
 
-    /// The expression as a bound called `what`, if it is known by now.
-    pub(super) fn known(&mut self, expression: &Expression, what: &str) -> AmountValue {
+    /// The expression as a bound, if it is known by now.
+    pub(super) fn known(&mut self, expression: &Expression, role: Role) -> AmountValue {
         match &expression.kind {
             ExpressionKind::Error => AmountValue::Error,
-            ExpressionKind::Value(_) => match evaluate::bound(expression, &[], what) {
+            ExpressionKind::Value(_) => match evaluate::bound(expression, &[], role) {
                 Ok(bound) => AmountValue::Known(bound),
                 Err(problem) => {
                     self.report(problem);
@@ -99,7 +96,7 @@ impl Resolver<'_> {
 
     pub(super) fn report(&mut self, problem: evaluate::Wrong) {
         if let Some(problem) = problem {
-            self.problems.push(*problem);
+            self.problems.push(Problem::Amount(*problem));
         }
     }
 
@@ -143,14 +140,8 @@ impl Resolver<'_> {
             Some(Some(Bound::Infinite)) => infinite(),
             Some(None) => ExpressionKind::Error,
             None => {
-                let name = clip(&ident.name);
-                let message = format!("`{name}` is used before it is defined");
-                self.problems.push(
-                    Diagnostic::error(Code::UnknownName, ident.span, message)
-                        .primary("not known yet")
-                        .label(self.program.parameters[index].name.span, "defined only here")
-                        .help("A named number may be calculated from those above it: move this one up."),
-                );
+                let definition = self.program.parameters[index].name.span;
+                self.problems.push(Problem::UsedBeforeDefined { name: ident.clone(), definition });
                 ExpressionKind::Error
             }
         }
@@ -173,37 +164,20 @@ impl Resolver<'_> {
             "day" | "days" => Some("days"),
             _ => None,
         };
-        if let Some((mark, name)) = quoted_elsewhere(&ident.name).filter(|_| ident.package.is_none()) {
-            self.problems.push(curly_quote(ident, mark, name));
-            return;
-        }
-        let problem = Diagnostic::error(Code::UnknownName, ident.span, format!("nothing is called `{}`", clip(&ident.name)))
-            .primary("neither a parameter or variable here nor a named number")
-            .help("A value is a number, a string, `t`, `nil`, a parameter, a name from `let`, `dotimes` or `defparameter`. A symbol is quoted: `'name`.");
-        self.problems.push(match unit {
-            Some(unit) => {
-                problem.help(format!("A unit stands before its number, in a list with it: `({unit} 5)`."))
-            }
-            None => {
-                let problem = suffixed(problem, ident.span, &ident.name);
-                problem.meant(ident.span, near.map(|near| ident.with_name(near)))
-            }
+        let name = ident.clone();
+        self.problems.push(match (quoted_elsewhere(ident), unit) {
+            (Some((mark, quoted)), _) => Problem::CurlyQuote { name, mark, quoted: quoted.to_string() },
+            (None, Some(unit)) => Problem::StrayUnit { name, unit },
+            (None, None) => Problem::UnknownName { name, near: near.map(str::to_string) },
         });
     }
 }
 
 /// A name with a mark before it that looks like the quote: the mark, and the name.
-fn quoted_elsewhere(name: &str) -> Option<(char, &str)> {
+fn quoted_elsewhere(ident: &Ident) -> Option<(char, &str)> {
+    let name = Some(ident.name.as_str()).filter(|_| ident.package.is_none())?;
     let mark = name.chars().next().filter(|c| "\u{2018}\u{2019}\u{b4}\u{2bc}\u{2032}".contains(*c))?;
     Some((mark, &name[mark.len_utf8()..])).filter(|(_, name)| !name.is_empty())
-}
-
-fn curly_quote(ident: &Ident, mark: char, name: &str) -> Diagnostic {
-    let message = format!("the mark before `{}` is no quote: it is U+{:04X}", clip(name), u32::from(mark));
-    Diagnostic::error(Code::UnknownName, ident.span, message)
-        .primary("read as a name that begins with this mark")
-        .help("A symbol is quoted with the straight apostrophe of the keyboard, U+0027. Word processors change it.")
-        .change(ident.span, format!("'{name}"))
 }
 
 fn infinite() -> ExpressionKind {

@@ -2,13 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::problem::{Defined, Missing, Problem};
 use super::symbols::{SymbolKind, Uses};
-use crate::ast::{Ident, Import, Package, Program};
-use crate::code::Code;
-use crate::diagnostic::{Diagnostic, Severity};
-use crate::form::clip;
+use crate::ast::{Call, Ident, Import, Package, Program};
 use crate::nearest::nearest;
-use crate::parse::{DEFAULT_PACKAGE, instead_of_operator};
+use crate::parse::{DEFAULT_PACKAGE, Instead, instead_of_operator};
 use crate::problem::Problems;
 use crate::source::Span;
 use crate::words::Position;
@@ -50,7 +48,7 @@ impl Names {
         for package in &program.packages {
             let name = &package.name.name;
             match firsts.get(name.as_str()) {
-                Some(first) => problems.push(defined_twice("package", &package.name, *first)),
+                Some(first) => problems.push(defined_twice(Defined::Package, &package.name, *first)),
                 None => {
                     firsts.insert(name, package.name.span);
                     names.packages.push(name.clone());
@@ -61,7 +59,7 @@ impl Names {
             for nickname in &package.nicknames {
                 match firsts.get(nickname.name.as_str()) {
                     Some(first) if nickname.name != package.name.name => {
-                        problems.push(defined_twice("package", nickname, *first));
+                        problems.push(defined_twice(Defined::Package, nickname, *first));
                     }
                     _ => {
                         firsts.insert(&nickname.name, nickname.span);
@@ -71,10 +69,11 @@ impl Names {
             }
         }
         let programs = program.programs.iter().map(|p| (&p.home, &p.name));
-        fill(&mut names.programs, programs, "program", problems);
+        fill(&mut names.programs, programs, Defined::Program, problems);
         let numbers = program.parameters.iter().map(|p| (&p.home, &p.name));
-        fill(&mut names.numbers, numbers, "named number", problems);
-        fill(&mut names.classes, program.classes.iter().map(|c| (&c.home, &c.name)), "class", problems);
+        fill(&mut names.numbers, numbers, Defined::NamedNumber, problems);
+        let classes = program.classes.iter().map(|c| (&c.home, &c.name));
+        fill(&mut names.classes, classes, Defined::Class, problems);
         for class in &program.classes {
             let named = class.slots.iter().flat_map(|slot| slot.accessors.iter().chain([&slot.name]));
             names.slots.extend(named.map(|name| (class.home.clone(), name.name.clone())));
@@ -103,7 +102,7 @@ impl Names {
             let Some(from) = self.check_package(home, from, uses, problems) else { continue };
             let wanted = problems.wants(name.span.source) && !problems.has_lost(&name.name);
             if !self.has(&from, name, uses) && wanted {
-                problems.push(self.not_there(&from, name, "imported"));
+                problems.push(self.not_there(&from, name, true));
                 // Where it is called, it is not missed again.
                 problems.lose_text(&name.name);
             }
@@ -112,8 +111,7 @@ impl Names {
         for export in &package.exports {
             let wanted = problems.wants(export.span.source) && !problems.has_lost(&export.name);
             if !self.has(home, export, uses) && wanted {
-                let problem = self.not_there(home, export, "exported");
-                problems.push(Diagnostic { severity: Severity::Warning, ..problem });
+                problems.push(self.not_there(home, export, false));
             }
         }
     }
@@ -130,16 +128,12 @@ impl Names {
         true
     }
 
-    fn not_there(&self, package: &str, name: &Ident, how: &str) -> Diagnostic {
+    fn not_there(&self, package: &str, name: &Ident, is_imported: bool) -> Problem {
         let tables = [&self.programs, &self.numbers, &self.classes];
         let known = tables.into_iter().flat_map(|table| table.keys());
         let known = known.filter(|(home, _)| home == package).map(|(_, name)| name.as_str());
-        let near = nearest(&name.name, known);
-        let message = format!("the package `{}` has no `{}`", clip(package), clip(&name.name));
-        Diagnostic::error(Code::UnknownName, name.span, message)
-            .primary(format!("{how} here"))
-            .help("A package has the programs, classes and named numbers that are defined after its `in-package`.")
-            .designated(name.span, near)
+        let near = nearest(&name.name, known).map(str::to_string);
+        Problem::NotInPackage { package: package.to_string(), name: name.clone(), is_imported, near }
     }
 
     /// The package that a name of a package means in the package `home`.
@@ -165,53 +159,31 @@ impl Names {
         self.find(&self.classes, ident, home)
     }
 
-    /// Says that a call means nothing, and what it may have meant.
-    pub(super) fn unknown_program(&self, ident: &Ident, home: &str) -> Diagnostic {
-        let name = clip(&ident.name);
-        if let Some(package) = &ident.package
+    /// What a call that means nothing may have meant.
+    pub(super) fn unknown_program(&self, call: &Call, home: &str, create: Missing) -> Problem {
+        let name = call.program.clone();
+        if let Some(package) = &name.package
             && !self.packages.iter().any(|known| known == self.package(home, package))
         {
-            let near = nearest(package, self.packages()).map(|near| format!("{near}:{}", ident.name));
-            return Diagnostic::error(
-                Code::UnknownPackage,
-                ident.span,
-                format!("there is no package `{}`", clip(package)),
-            )
-            .primary("not a package of this source")
-            .meant(ident.span, near);
+            let near = nearest(package, self.packages()).map(str::to_string);
+            return Problem::UnknownPackageOf { name, near };
         }
-        if let Some(instead) = instead_of_operator(&ident.name).filter(|_| ident.package.is_none()) {
-            return Diagnostic::error(Code::UnknownOperator, ident.span, format!("RMPL has no `{name}`"))
-                .primary("neither an operator nor a program")
-                .help(instead.help);
+        if let Some(instead) = instead_of_operator(&name.name).filter(|_| name.package.is_none()) {
+            let cure = Instead::word(instead);
+            let is_sure = |word: &&str| *word != "delay" || (1..=2).contains(&call.arguments.len());
+            return Problem::ForeignOperator { name, instead, cure: cure.filter(is_sure) };
         }
-        let from = ident.package.as_deref().map_or(home, |package| self.package(home, package));
+        let from = name.package.as_deref().map_or(home, |package| self.package(home, package));
         let visible = self.programs.keys().filter(|(package, _)| package == from || self.sees(from, package));
-        let near = nearest(&ident.name, visible.map(|(_, name)| name.as_str()).chain(Position::Body.names()));
-        if let Some(near) = near.filter(|near| Position::Body.has(near)) {
-            return Diagnostic::error(
-                Code::UnknownOperator,
-                ident.span,
-                format!("there is no operator `{name}`"),
-            )
-            .primary("neither an operator nor a program")
-            .meant(ident.span, Some(near));
-        }
-        let elsewhere = self.programs.keys().find(|(_, program)| *program == ident.name);
-        let problem = Diagnostic::error(
-            Code::UnknownProgram,
-            ident.span,
-            format!("the program `{name}` is not defined"),
-        )
-        .primary("called here");
-        match (elsewhere, near) {
-            (Some((package, _)), _) => problem
-                .help(format!("The package `{package}` has one: write `{package}:{name}`."))
-                .change(ident.span, format!("{package}:{}", ident.name)),
-            (None, Some(near)) => problem.meant(ident.span, Some(ident.with_name(near))),
-            (None, None) => problem.help(format!(
-                "Define it: `(define-control-program {name} () (declare (primitive) (duration (simple :lower-bound 5 :upper-bound 10))))`."
-            )),
+        let visible = visible.map(|(_, name)| name.as_str()).chain(Position::Body.names());
+        let near = nearest(&name.name, visible).map(str::to_string);
+        match near {
+            Some(near) if Position::Body.has(&near) => Problem::UnknownOperator { name, near },
+            near => {
+                let elsewhere = self.programs.keys().find(|(_, program)| *program == name.name);
+                let elsewhere = elsewhere.map(|(package, _)| package.clone());
+                Problem::UnknownProgram { name, elsewhere, near, create }
+            }
         }
     }
 
@@ -246,16 +218,8 @@ impl Names {
             return Some(name.to_string());
         }
         if !builtin {
-            let near = nearest(name, self.packages());
-            problems.push(
-                Diagnostic::error(
-                    Code::UnknownPackage,
-                    span,
-                    format!("the package `{}` is not defined", clip(name)),
-                )
-                .primary("not a package of this source")
-                .designated(span, near),
-            );
+            let near = nearest(name, self.packages()).map(str::to_string);
+            problems.push(Problem::UnknownPackage { name: name.to_string(), span, near });
         }
         None
     }
@@ -264,7 +228,7 @@ impl Names {
 fn fill<'a>(
     table: &mut Table,
     definitions: impl Iterator<Item = (&'a String, &'a Ident)>,
-    what: &str,
+    what: Defined,
     problems: &mut Problems,
 ) {
     let mut firsts: BTreeMap<(&str, &str), Span> = BTreeMap::new();
@@ -282,13 +246,6 @@ fn fill<'a>(
     }
 }
 
-fn defined_twice(what: &str, name: &Ident, first: Span) -> Diagnostic {
-    Diagnostic::error(
-        Code::DefinedTwice,
-        name.span,
-        format!("the {what} `{}` is defined twice", clip(&name.name)),
-    )
-    .primary("again here")
-    .label(first, "first defined here")
-    .help("Rename one of them, or take one out.")
+fn defined_twice(what: Defined, name: &Ident, first: Span) -> Problem {
+    Problem::DefinedTwice { what, name: name.clone(), first }
 }

@@ -2,13 +2,11 @@
 
 use kirk_network::{Bound, Duration};
 
+use super::problem::Problem;
 use super::{Expander, Frame};
-use crate::analyse::{negative, reversed};
 use crate::ast::{Limits, Value, ValueKind};
-use crate::code::Code;
-use crate::diagnostic::Diagnostic;
 use crate::episode::Interval;
-use crate::evaluate;
+use crate::evaluate::{self, Reversed, Role, Written};
 use crate::source::Span;
 use crate::typed::{Amount, AmountValue, Bounds, Expression, ExpressionKind};
 
@@ -16,15 +14,17 @@ impl Expander<'_> {
     /// The numbers of an interval of durations, which are not negative.
     pub(super) fn interval(&mut self, bounds: &Bounds, frame: &Frame<'_>, limits: Limits) -> Interval {
         let mut interval = self.signed_interval(bounds, frame, limits);
-        let [low, high] = limits.words();
-        let both =
-            [(&bounds.lower, Some(interval.lower), low), (&bounds.upper, interval.upper.finite(), high)];
-        for (amount, value, what) in both {
+        let both = [
+            (&bounds.lower, Some(interval.lower), Role::Lower(limits)),
+            (&bounds.upper, interval.upper.finite(), Role::Upper(limits)),
+        ];
+        for (amount, value, role) in both {
             // What was known before has been reported before.
             if let (Some(value), AmountValue::Computed(expression)) = (value, &amount.value)
-                && let Some(problem) = negative(value, argument(expression, frame, amount.span), what)
+                && value < Duration::ZERO
             {
-                self.problems.push(problem.label(frame.call, "with the arguments of this call"));
+                let span = argument(expression, frame, amount.span);
+                self.wrong(evaluate::Problem::Negative { role, value, span, defined: Vec::new() }, frame);
             }
         }
         interval.lower = interval.lower.max(Duration::ZERO);
@@ -36,28 +36,32 @@ impl Expander<'_> {
 
     /// The numbers of an interval.
     pub(super) fn signed_interval(&mut self, bounds: &Bounds, frame: &Frame<'_>, limits: Limits) -> Interval {
-        let [low, high] = limits.words();
+        let low = Role::Lower(limits);
         let lower = match self.bound(&bounds.lower, frame, low) {
             Some(Bound::Finite(lower)) => lower,
             Some(Bound::Infinite) => {
-                self.problems.push(
-                    Diagnostic::error(Code::InfiniteLower, bounds.lower.span, format!("{low} is infinite"))
-                        .primary("this would never be over")
-                        .label(frame.call, "with the arguments of this call")
-                        .help("Only an upper bound may be `:infinity`."),
-                );
+                self.wrong(evaluate::Problem::InfiniteLower { role: low, span: bounds.lower.span }, frame);
                 Duration::ZERO
             }
             None => Duration::ZERO,
         };
-        let mut upper = self.bound(&bounds.upper, frame, high).unwrap_or(Bound::Finite(lower));
+        let mut upper = self.bound(&bounds.upper, frame, Role::Upper(limits)).unwrap_or(Bound::Finite(lower));
+        let (lower_span, upper_span) = (bounds.lower.span, bounds.upper.span);
         if let Bound::Finite(most) = upper
-            && let Some(problem) = reversed(lower, most, bounds, limits)
+            && lower > most
         {
-            self.problems.push(problem.label(frame.call, "with the arguments of this call"));
+            let problem = Reversed {
+                limits,
+                least: lower,
+                most,
+                lower: lower_span,
+                upper: upper_span,
+                written: Written::Computed,
+                defined: Vec::new(),
+            };
+            self.wrong(evaluate::Problem::Reversed(problem), frame);
             upper = Bound::Finite(lower);
         }
-        let (lower_span, upper_span) = (bounds.lower.span, bounds.upper.span);
         Interval { lower, upper, lower_span, upper_span, span: bounds.span }
     }
 
@@ -73,12 +77,12 @@ impl Expander<'_> {
         })
     }
 
-    fn bound(&mut self, amount: &Amount, frame: &Frame<'_>, what: &str) -> Option<Bound> {
+    fn bound(&mut self, amount: &Amount, frame: &Frame<'_>, role: Role) -> Option<Bound> {
         match &amount.value {
             AmountValue::Known(bound) => Some(*bound),
             AmountValue::Error => None,
             AmountValue::Computed(expression) => {
-                let bound = evaluate::bound(expression, &frame.variables, what);
+                let bound = evaluate::bound(expression, &frame.variables, role);
                 bound.map_err(|problem| self.report(problem, frame)).ok()
             }
         }
@@ -94,13 +98,12 @@ impl Expander<'_> {
 
     fn report(&mut self, problem: evaluate::Wrong, frame: &Frame<'_>) {
         if let Some(problem) = problem {
-            let here =
-                frame.call == problem.span || problem.labels.iter().any(|label| label.span == frame.call);
-            self.problems.push(match here {
-                true => *problem,
-                false => problem.label(frame.call, "with the arguments of this call"),
-            });
+            self.wrong(*problem, frame);
         }
+    }
+
+    fn wrong(&mut self, problem: evaluate::Problem, frame: &Frame<'_>) {
+        self.problems.push(Problem::Amount { problem, call: frame.call });
     }
 }
 

@@ -3,10 +3,9 @@
 use std::collections::{BTreeMap, HashMap};
 
 use super::Expander;
+use super::problem::Problem;
 use super::scope::{Scopes, Target, Wanted, shown};
 use crate::ast::Value;
-use crate::code::Code;
-use crate::diagnostic::Diagnostic;
 use crate::episode::{Constraint, Episode, EventOf};
 use crate::typed;
 
@@ -60,16 +59,10 @@ impl Expander<'_> {
                 index.find(&wanted).map(|episode| EventOf { episode: episode.to_string(), end: event.end })
             };
             match (find(&pending.from), find(&pending.to)) {
-                (Ok(from), Ok(to)) if from == to => self.problems.push(
-                    Diagnostic::error(
-                        Code::SameEvent,
-                        pending.to.0.span,
-                        "a constraint between an event and itself",
-                    )
-                    .primary("this is the same event")
-                    .label(pending.from.0.span, "as this one")
-                    .help("From an event to itself it is always 0 s. Did you mean its other end?"),
-                ),
+                (Ok(from), Ok(to)) if from == to => {
+                    let (from, to) = (pending.from.0.span, pending.to.0.span);
+                    self.problems.push(Problem::SameEvent { from, to });
+                }
                 (Ok(from), Ok(to)) => {
                     root.constraints.push(Constraint { from, to, interval: pending.interval });
                 }

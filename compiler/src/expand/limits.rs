@@ -1,10 +1,8 @@
 //! How far a program may unfold, found out before it is unfolded: two calls of two calls of two calls ... double each time.
 
-use crate::code::Code;
-use crate::diagnostic::Diagnostic;
+use super::problem::Problem;
 use crate::episode::{MAX_DEPTH, MAX_EPISODES};
 use crate::evaluate;
-use crate::form::clip;
 use crate::problem::Problems;
 use crate::typed::{Body, Model, Work};
 
@@ -13,38 +11,16 @@ pub(super) fn check(model: &Model, entry: usize, problems: &mut Problems) -> boo
     let sizes = sizes(model, entry);
     let Some(size) = sizes[entry] else { return false };
     let program = &model.programs[entry];
-    let name = clip(&program.name.name);
-    if size.episodes > MAX_EPISODES {
+    let Size { episodes, depth } = size;
+    if episodes > MAX_EPISODES {
         let largest =
             program.calls().into_iter().max_by_key(|(target, _)| sizes[*target].map(|size| size.episodes));
-        let count = match size.episodes {
-            u64::MAX => "more episodes than can be counted".to_string(),
-            episodes => format!("{episodes} episodes"),
-        };
-        let mut problem = Diagnostic::error(
-            Code::TooManyEpisodes,
-            program.name.span,
-            format!("`{name}` unfolds to {count}"),
-        )
-        .primary(format!("at most {MAX_EPISODES} are possible"))
-        .help("Every call is an episode of its own, and so is everything it calls in turn; every repetition counts.");
-        if let Some((target, span)) = largest {
-            let what = clip(&model.programs[target].name.name);
-            problem = problem.label(span, format!("most of them come from `{what}`"));
-        }
-        problems.push(problem);
+        let most = largest.map(|(target, span)| (model.programs[target].name.clone(), span));
+        problems.push(Problem::TooManyEpisodes { program: program.name.clone(), episodes, most });
         return false;
     }
-    if size.depth > MAX_DEPTH {
-        problems.push(
-            Diagnostic::error(
-                Code::CallsTooDeep,
-                program.name.span,
-                format!("`{name}` unfolds to a depth of {}", size.depth),
-            )
-            .primary(format!("at most {MAX_DEPTH} programs and forms can be nested"))
-            .help("Call the programs one after the other instead of each from the one before."),
-        );
+    if depth > MAX_DEPTH {
+        problems.push(Problem::TooDeep { program: program.name.clone(), depth });
         return false;
     }
     true

@@ -7,10 +7,8 @@
 
 use std::collections::{BTreeMap, HashMap};
 
+use super::problem::{Apart, Found, MOST_TOLD, Name, Problem, There};
 use crate::ast::{Value, ValueKind};
-use crate::code::Code;
-use crate::diagnostic::Diagnostic;
-use crate::form::clip;
 use crate::problem::Problems;
 use crate::source::Span;
 
@@ -77,13 +75,8 @@ impl Scopes {
         if let Target::Label(name) = &named.target {
             let key = (named.scope, name.clone(), key(&named.arguments));
             if let Some(first) = self.labels.get(&key) {
-                let shown = shown(name, &named.arguments);
-                problems.push(
-                    Diagnostic::error(Code::DefinedTwice, named.span, format!("the label `{shown}` is given twice"))
-                        .primary("again here")
-                        .label(*first, "first here")
-                        .help("A label names one occurrence: rename one of them, or tell them apart by an argument, as in `(label (x 1) ...)`."),
-                );
+                let label = shown(name, &named.arguments);
+                problems.push(Problem::LabelTwice { label, span: named.span, first: *first });
                 return;
             }
             self.labels.insert(key, named.span);
@@ -123,14 +116,15 @@ pub(super) struct Index<'a> {
 
 impl Index<'_> {
     /// The episode a name means.
-    pub(super) fn find(&self, wanted: &Wanted<'_>) -> Result<&str, Box<Diagnostic>> {
+    pub(super) fn find(&self, wanted: &Wanted<'_>) -> Result<&str, Box<Problem>> {
         let arguments: Option<Vec<ValueKind>> =
             wanted.arguments.as_ref().map(|values| values.iter().map(|value| value.kind.clone()).collect());
         let arguments_key = arguments.as_deref().map(key);
         let label = Target::Label(wanted.name.to_string());
         let program = wanted.program.map(Target::Program);
+        let name = Name { name: wanted.name.to_string(), arguments, span: wanted.span };
         if wanted.is_occurrence {
-            return self.occurrence(wanted, arguments.as_deref());
+            return self.occurrence(program.as_ref(), name);
         }
         let targets = [wanted.may_be_label.then_some(&label), program.as_ref()];
         for target in targets.into_iter().flatten() {
@@ -142,115 +136,67 @@ impl Index<'_> {
                 match &places[from..to] {
                     [] => scope = self.scopes.scopes[at].parent,
                     [(_, only)] => return Ok(&self.scopes.named[*only].episode),
-                    several => return Err(self.ambiguous(wanted, arguments.as_deref(), several).into()),
+                    several => return Err(self.ambiguous(name, several).into()),
                 }
             }
         }
-        Err(self.missing(wanted, arguments.as_deref(), &targets).into())
+        let others = targets.iter().flatten().find_map(|target| self.places.get(&(*target, None)));
+        let there = others.map_or(There::Nothing, |others| self.others(others));
+        Err(Problem::NoOccurrence { name, there }.into())
     }
 
     /// The occurrence whose name is written out: `a#2`.
-    fn occurrence(
-        &self,
-        wanted: &Wanted<'_>,
-        arguments: Option<&[ValueKind]>,
-    ) -> Result<&str, Box<Diagnostic>> {
-        let found = self.episodes.get(wanted.name).map(|position| &self.scopes.named[*position]);
+    fn occurrence(&self, program: Option<&Target>, name: Name) -> Result<&str, Box<Problem>> {
+        let found = self.episodes.get(name.name.as_str()).map(|position| &self.scopes.named[*position]);
+        let of_it = |named: &&Named| program == Some(&named.target);
         let is_meant = |named: &&Named| {
-            wanted.program.map(Target::Program).as_ref() == Some(&named.target)
-                && arguments.is_none_or(|arguments| key(arguments) == key(&named.arguments))
+            let arguments = name.arguments.as_deref();
+            of_it(named) && arguments.is_none_or(|arguments| key(arguments) == key(&named.arguments))
         };
         if let Some(named) = found.filter(is_meant) {
             return Ok(&named.episode);
         }
-        let name = written(wanted.name, arguments);
-        let problem = Diagnostic::error(Code::UnknownLabel, wanted.span, format!("`{name}` does not occur"))
-            .primary("looked for in the whole mission");
-        let of_it = |named: &&Named| wanted.program.map(Target::Program).as_ref() == Some(&named.target);
-        let mut all = self.scopes.named.iter().filter(of_it);
-        let problem = match (all.next(), all.next_back()) {
-            (None, _) => problem.help("It is defined, but nothing that the mission does leads to it."),
-            (Some(only), None) => problem.help(format!("There is `{}` alone.", only.episode)),
-            (Some(first), Some(last)) => {
-                problem.help(format!("There is `{}` up to `{}`.", first.episode, last.episode))
-            }
+        let mut all = self.scopes.named.iter().filter(of_it).map(|named| named.episode.clone());
+        let there = match (all.next(), all.next_back()) {
+            (None, _) => There::Nothing,
+            (Some(only), None) => There::Only(only),
+            (Some(first), Some(last)) => There::Between(first, last),
         };
-        Err(problem.into())
+        Err(Problem::NoOccurrence { name, there }.into())
     }
 
-    fn ambiguous(
-        &self,
-        wanted: &Wanted<'_>,
-        arguments: Option<&[ValueKind]>,
-        several: &[Entry],
-    ) -> Diagnostic {
-        let name = written(wanted.name, arguments);
+    fn ambiguous(&self, name: Name, several: &[Entry]) -> Problem {
         let found: Vec<&Named> = several.iter().map(|(_, position)| &self.scopes.named[*position]).collect();
-        let count = found.len();
-        let mut list: Vec<String> =
-            found.iter().take(6).map(|named| format!("`{}`", named.episode)).collect();
-        if count > 6 {
-            list.push(format!("{} more", count - 6));
-        }
-        let message = format!("`{name}` could be any of {count} occurrences: {}", list.join(", "));
-        let by_argument = arguments.is_none() && found.iter().any(|named| !named.arguments.is_empty());
-        let short = clip(wanted.name);
-        let help = match (by_argument, found.first()) {
-            (true, Some(first)) => {
-                format!("Say which one by its arguments: `{}`.", written(wanted.name, Some(&first.arguments)))
+        let has_arguments = found.iter().any(|named| !named.arguments.is_empty());
+        let apart = match found.first() {
+            Some(first) if name.arguments.is_none() && has_arguments => {
+                Apart::Arguments(first.arguments.clone())
             }
-            (_, Some(Named { target: Target::Label(_), .. })) => format!(
-                "Tell them apart by an argument, as in `(label ({short} i) ...)`, or put the `between` into the program that gives the label."
-            ),
-            _ => format!(
-                "Give the one you mean a name, `(label x ({short} ...))`, and write `x` here. In a `dotimes` the name has an argument: `(label (x i) ({short} ...))`."
-            ),
+            Some(Named { target: Target::Label(_), .. }) => Apart::ArgumentOfLabel,
+            _ => Apart::Label,
         };
-        let mut problem = Diagnostic::error(Code::AmbiguousLabel, wanted.span, message)
-            .primary("which one is meant?")
-            .help(help);
-        let places: BTreeMap<Span, &str> =
-            found.iter().rev().map(|named| (named.span, named.episode.as_str())).collect();
-        for (span, episode) in places.into_iter().take(6) {
-            problem = problem.label(span, format!("`{}`", clip(episode)));
-        }
-        problem
+        let places: BTreeMap<Span, &String> =
+            found.iter().rev().map(|named| (named.span, &named.episode)).collect();
+        let places = places.into_iter().take(MOST_TOLD).map(|(span, episode)| (span, episode.clone()));
+        let episodes = found.iter().take(MOST_TOLD).map(|named| named.episode.clone()).collect();
+        let found = Found { count: found.len(), episodes, places: places.collect() };
+        Problem::Ambiguous { name, found, apart }
     }
 
-    fn missing(
-        &self,
-        wanted: &Wanted<'_>,
-        arguments: Option<&[ValueKind]>,
-        targets: &[Option<&Target>; 2],
-    ) -> Diagnostic {
-        let name = written(wanted.name, arguments);
-        let others = targets.iter().flatten().find_map(|target| self.places.get(&(*target, None)));
-        let problem = Diagnostic::error(Code::UnknownLabel, wanted.span, format!("`{name}` does not occur"))
-            .primary("looked for in the whole mission");
-        let Some(others) = others else {
-            return problem.help("It is defined, but nothing that the mission does leads to it.");
-        };
-        let mut list: Vec<String> = Vec::new();
-        let mut first = None;
-        for (_, position) in others {
-            let other = &self.scopes.named[*position];
-            first.get_or_insert(other.span);
-            let text = format!("`{}`", written(wanted.name, Some(&other.arguments)));
-            if !list.contains(&text) {
-                list.push(text);
+    /// Those of a name with other arguments: one more than is told, if there are so many.
+    fn others(&self, others: &[Entry]) -> There {
+        let mut different: Vec<Vec<ValueKind>> = Vec::new();
+        let named = others.iter().map(|(_, position)| &self.scopes.named[*position]);
+        let first = named.clone().next().map_or(Span::default(), |named| named.span);
+        for named in named {
+            if !different.contains(&named.arguments) {
+                different.push(named.arguments.clone());
             }
-            if list.len() > 6 {
-                list.pop();
-                list.push("others".to_string());
+            if different.len() > MOST_TOLD {
                 break;
             }
         }
-        let list = match list.split_last() {
-            Some((last, rest)) if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
-            _ => list.concat(),
-        };
-        let problem = problem.help(format!("There is {list}. Repetitions count from 0."));
-        first.into_iter().fold(problem, |problem, span| problem.label(span, "one of this name is here"))
+        There::Others(different, first)
     }
 }
 
@@ -263,16 +209,8 @@ pub(super) fn shown(name: &str, arguments: &[ValueKind]) -> String {
     }
 }
 
-/// As it would be written: `(confirm 0 1)`.
-fn written(name: &str, arguments: Option<&[ValueKind]>) -> String {
-    let parts: Vec<String> = arguments.unwrap_or_default().iter().map(source).collect();
-    match parts.is_empty() {
-        true => clip(name),
-        false => clip(&format!("({name} {})", parts.join(" "))),
-    }
-}
-
-fn source(value: &ValueKind) -> String {
+/// A value as it would be written.
+pub(crate) fn source(value: &ValueKind) -> String {
     match value {
         ValueKind::Number(number) => number.to_string(),
         ValueKind::Text(text) => format!("\"{text}\""),

@@ -169,7 +169,7 @@ pub struct DurationOf {
     pub span: Span,
 }
 
-/// What two bounds are about: what they are called in messages depends on it.
+/// What two bounds are about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Limits {
     /// A duration, or the time between two events.
@@ -178,17 +178,6 @@ pub enum Limits {
     ObservationDelay,
     /// A `delay`.
     Wait,
-}
-
-impl Limits {
-    /// What the lower and the upper bound are called.
-    pub fn words(self) -> [&'static str; 2] {
-        match self {
-            Limits::Duration => ["the lower bound", "the upper bound"],
-            Limits::ObservationDelay => ["the shortest observation delay", "the longest observation delay"],
-            Limits::Wait => ["the shortest wait", "the longest wait"],
-        }
-    }
 }
 
 /// An interval of durations.

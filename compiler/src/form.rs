@@ -97,22 +97,9 @@ impl Form {
         self.kind == FormKind::Error
     }
 
-    /// What to call this in a message: "a list", "the number 15".
-    pub fn describe(&self) -> String {
-        match &self.kind {
-            FormKind::List(items) if items.is_empty() => "an empty list".to_string(),
-            FormKind::List(_) => match self.call() {
-                Some((word, _)) => format!("the form `({} ...)`", clip(word)),
-                None => "a list".to_string(),
-            },
-            FormKind::Symbol(symbol) => format!("the name `{}`", clip(&symbol.name)),
-            FormKind::Keyword(name) => format!("the keyword `:{}`", clip(name)),
-            FormKind::Uninterned(name) => format!("the name `#:{}`", clip(name)),
-            FormKind::Number(text) => format!("the number {}", clip(text)),
-            FormKind::String(_) => "a string".to_string(),
-            FormKind::Quote(_) => "a quoted form".to_string(),
-            FormKind::Error => "something unreadable".to_string(),
-        }
+    /// The place of the first element of a list, which says what the list is.
+    pub fn head(&self) -> Span {
+        self.list().and_then(|items| items.first()).map_or(self.span, |first| first.span)
     }
 }
 
@@ -170,4 +157,9 @@ pub fn clip(word: &str) -> String {
     } else {
         word.chars().take(57).chain("...".chars()).collect()
     }
+}
+
+/// The form on one line, short enough for a message.
+pub(crate) fn text_of(form: &Form) -> String {
+    clip(&write(form))
 }

@@ -5,25 +5,26 @@
 mod amount;
 mod binding;
 mod body;
-mod class;
+pub(crate) mod class;
 mod condition;
 mod declaration;
 mod label;
 mod options;
-mod package;
+pub(crate) mod package;
+pub(crate) mod problem;
 mod program;
 mod slips;
 
 pub(crate) use slips::amount::suffixed;
-pub(crate) use slips::elsewhere::{Instead, instead_of_operator};
+pub(crate) use slips::elsewhere::{Cure, Instead, instead_of_operator};
 
 use std::collections::BTreeSet;
 
 use crate::ast::{Ident, NamedNumber, Program};
 use crate::form::{Form, FormKind};
 use crate::problem::Problems;
-use crate::words::{DEFINITIONS, usage};
-use slips::{expected, unexpected};
+use crate::words::DEFINITIONS;
+use problem::{Expected, Missing, Number, Problem};
 
 /// The package of definitions that no `in-package` comes before.
 pub(crate) const DEFAULT_PACKAGE: &str = "cl-user";
@@ -71,22 +72,21 @@ fn defined(forms: &[Form], program: &Program) -> BTreeSet<String> {
 }
 
 fn named_number(form: &Form, rest: &[Form], home: &str, problems: &mut Problems) -> Option<NamedNumber> {
-    const SHAPE: &str = usage("defparameter");
     match rest {
         [name, value] | [name, value, Form { kind: FormKind::String(_), .. }] => match ident(name) {
             Some(name) => Some(NamedNumber {
                 home: home.to_string(),
                 name,
-                value: amount::amount(value, "this value", problems),
+                value: amount::amount(value, Number::Value, problems),
             }),
             None => {
-                problems.push(unexpected(name, "a name", SHAPE));
+                problems.push(Problem::Unexpected { found: name, expected: Expected::NumberName });
                 problems.lose(form);
                 None
             }
         },
         _ => {
-            problems.push(expected(form, "a name and a number were expected", SHAPE));
+            problems.push(Problem::Missing { at: form.head(), what: Missing::NameAndNumber });
             problems.lose(form);
             None
         }

@@ -6,6 +6,7 @@ use crate::code::Code;
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::form::Form;
 use crate::source::Span;
+use crate::wording::too_many;
 
 /// How many messages about one source are kept; the rest are counted.
 pub const MAX_PER_SOURCE: usize = 200;
@@ -133,11 +134,7 @@ impl Problems {
                 let at = self.list.partition_point(|d| d.span.source <= source);
                 let span =
                     self.list.get(at.wrapping_sub(1)).map_or(Span { source, start: 0, end: 0 }, |d| d.span);
-                let message = format!("there are {more} more problems in this source");
-                let rest = Diagnostic { severity, ..Diagnostic::error(Code::TooManyProblems, span, message) }
-                    .primary(format!("kirk shows the first {MAX_PER_SOURCE} it finds"))
-                    .help("Put the first ones right and look again: later problems often follow from earlier ones.");
-                self.list.insert(at, rest);
+                self.list.insert(at, too_many(more, severity, span));
             }
         }
         self.list

@@ -2,6 +2,7 @@
 
 use kirk_network::{Duration, ParseDurationError};
 
+use super::problem::Number;
 use super::{ident, slips};
 use crate::ast::{Amount, AmountKind};
 use crate::calculate::Operator;
@@ -9,8 +10,8 @@ use crate::form::{Form, FormKind, Symbol};
 use crate::problem::Problems;
 use crate::words::unit;
 
-/// Reads a duration or another number. `what` names it in messages.
-pub(super) fn amount(form: &Form, what: &str, problems: &mut Problems) -> Amount {
+/// Reads a duration or another number.
+pub(super) fn amount(form: &Form, what: Number, problems: &mut Problems) -> Amount {
     Amount { kind: kind(form, what, 1_000_000, problems), span: form.span }
 }
 
@@ -19,7 +20,7 @@ pub(super) fn is_calculation(form: &Form) -> bool {
     form.call().is_some_and(|(word, _)| Operator::of(word).is_some() || unit(word).is_some())
 }
 
-fn kind(form: &Form, what: &str, unit: i64, problems: &mut Problems) -> AmountKind {
+fn kind(form: &Form, what: Number, unit: i64, problems: &mut Problems) -> AmountKind {
     match &form.kind {
         FormKind::Number(text) => match number(text, unit) {
             Ok(value) => return AmountKind::Number(value),
@@ -44,11 +45,11 @@ fn kind(form: &Form, what: &str, unit: i64, problems: &mut Problems) -> AmountKi
 }
 
 /// `(minutes 5)`, `(+ x 1)`; `None` if it is neither.
-fn calculation(form: &Form, what: &str, problems: &mut Problems) -> Option<AmountKind> {
+fn calculation(form: &Form, what: Number, problems: &mut Problems) -> Option<AmountKind> {
     let (word, rest) = form.call()?;
     if let Some(operator) = Operator::of(word) {
         let (least, most) = operator.takes();
-        let part = |part: &Form| amount(part, "part of this calculation", problems);
+        let part = |part: &Form| amount(part, Number::PartOfCalculation, problems);
         return (least..=most)
             .contains(&rest.len())
             .then(|| AmountKind::Calculation(operator, rest.iter().map(part).collect()));

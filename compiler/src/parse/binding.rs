@@ -4,11 +4,10 @@ use std::collections::BTreeMap;
 
 use super::amount::amount;
 use super::body::{argument, bodies};
+use super::problem::{Missing, Named, Number, Problem};
 use super::{ident, slips};
 use crate::ast::{Argument, Body, Dotimes, Ident, Let};
-use crate::code::Code;
-use crate::diagnostic::Diagnostic;
-use crate::form::{Form, clip};
+use crate::form::Form;
 use crate::problem::Problems;
 use crate::source::Span;
 
@@ -32,7 +31,7 @@ pub(super) fn binding(
         names_twice(&bindings, problems);
     }
     if body.is_empty() {
-        problems.push(slips::binding::empty_let(operator, "this `let` has no body"));
+        problems.push(Problem::Missing { at: operator.span, what: Missing::BodyOfLet });
     }
     let body = bodies(body, problems);
     Some(Body::Let(Let { bindings, sequential, body, operator: operator.span, span: form.span }))
@@ -55,12 +54,8 @@ fn names_twice(bindings: &[(Ident, Argument)], problems: &mut Problems) {
     let mut firsts: BTreeMap<&str, Span> = BTreeMap::new();
     for (name, _) in bindings {
         if let Some(first) = firsts.insert(&name.name, name.span) {
-            let message = format!("`{}` is given two values", clip(&name.name));
-            problems.push(
-                Diagnostic::error(Code::DefinedTwice, name.span, message)
-                    .primary("again here")
-                    .label(first, "first here"),
-            );
+            let (what, again) = (Named::Variable, name.span);
+            problems.push(Problem::Repeated { what, name: &name.name, first, again });
         }
     }
 }
@@ -78,9 +73,9 @@ pub(super) fn dotimes(form: &Form, operator: &Form, rest: &[Form], problems: &mu
             return None;
         }
     };
-    let count = amount(count, "the number of repetitions", problems);
+    let count = amount(count, Number::Repetitions, problems);
     if body.is_empty() {
-        problems.push(slips::binding::empty_dotimes(operator, "this `dotimes` has nothing to repeat"));
+        problems.push(Problem::Missing { at: operator.span, what: Missing::BodyOfDotimes });
     }
     let body = bodies(body, problems);
     Some(Body::Dotimes(Dotimes { variable, count, body, operator: operator.span, span: form.span }))

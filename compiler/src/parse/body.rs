@@ -2,12 +2,10 @@
 
 use super::amount::{amount, is_calculation, is_name, number};
 use super::options::{flag, options};
-use super::slips::{self, text_of};
-use super::{binding, ident, label};
+use super::problem::{Number, Problem};
+use super::{binding, ident, label, slips};
 use crate::ast::{Argument, Body, Bounds, Call, Group, Limits, Value, ValueKind, Wait, Within};
-use crate::code::Code;
-use crate::diagnostic::Diagnostic;
-use crate::form::{Form, FormKind};
+use crate::form::{Form, FormKind, text_of};
 use crate::problem::Problems;
 use crate::source::Span;
 use crate::words::{Position, keywords};
@@ -64,7 +62,7 @@ pub(super) fn arguments(forms: &[Form], problems: &mut Problems) -> Vec<Argument
 /// An argument: a number to calculate, or a value.
 pub(super) fn argument(form: &Form, problems: &mut Problems) -> Argument {
     match form.is_error() || is_calculation(form) || slips::amount::is_clock(form) {
-        true => Argument::Amount(amount(form, "this argument", problems)),
+        true => Argument::Amount(amount(form, Number::Argument, problems)),
         false => Argument::Value(value(form)),
     }
 }
@@ -165,20 +163,15 @@ pub(super) fn interval(
     span: Span,
     problems: &mut Problems,
 ) -> Bounds {
-    let [least, most] = limits.words();
-    let lower = lower.map(|form| amount(form, least, problems));
-    let upper = upper.map(|form| amount(form, most, problems));
+    let lower = lower.map(|form| amount(form, Number::Lower(limits), problems));
+    let upper = upper.map(|form| amount(form, Number::Upper(limits), problems));
     Bounds { lower, upper, span }
 }
 
 /// Says that `(simple-temporal)` means nothing around a body.
 fn warn_of_no_bounds(form: &Form, problems: &mut Problems) {
     if form.list().is_some_and(|items| items.len() == 1) {
-        problems.push(
-            Diagnostic::warning(Code::NoBounds, form.span, "this constraint allows everything")
-                .primary("neither a lower nor an upper bound")
-                .help(slips::body::WITHIN),
-        );
+        problems.push(Problem::NoBounds { constraint: form.span });
     }
 }
 

@@ -2,56 +2,53 @@
 
 use super::body::value;
 use super::ident;
-use super::slips::{expected, unexpected};
+use super::problem::{Expected, Missing, Problem};
 use crate::ast::{Class, Slot, Type};
-use crate::code::Code;
-use crate::diagnostic::Diagnostic;
-use crate::form::{Form, FormKind, clip};
+use crate::form::{Form, FormKind};
 use crate::nearest::nearest;
 use crate::problem::Problems;
-use crate::words::usage;
 
-const SHAPE: &str = usage("defclass");
-const SLOT_OPTIONS: [&str; 9] =
+/// The options of a slot, of which some say nothing that matters here.
+pub(crate) const SLOT_OPTIONS: [&str; 9] =
     ["initarg", "initform", "type", "reader", "accessor", "finalp", "documentation", "writer", "allocation"];
 
 /// Parses a class definition.
 pub(super) fn class(form: &Form, rest: &[Form], home: &str, problems: &mut Problems) -> Option<Class> {
     let [name, supers, slots, options @ ..] = rest else {
-        problems.push(expected(form, "a class needs a name, its superclasses and its slots", SHAPE));
+        problems.push(Problem::Missing { at: form.head(), what: Missing::PartsOfClass });
         return None;
     };
     let Some(name) = ident(name) else {
-        problems.push(unexpected(name, "the name of the class", SHAPE));
+        problems.push(Problem::Unexpected { found: name, expected: Expected::ClassName });
         return None;
     };
     let mut class = Class { home: home.to_string(), name, supers: Vec::new(), slots: Vec::new() };
-    for item in listed(supers, "a list of superclasses", problems) {
+    for item in listed(supers, Expected::Superclasses, problems) {
         match ident(item) {
             Some(name) => class.supers.push(name),
             None if item.is_error() => {}
-            None => problems.push(unexpected(item, "the name of a class", SHAPE)),
+            None => problems.push(Problem::Unexpected { found: item, expected: Expected::Superclass }),
         }
     }
-    for item in listed(slots, "a list of slots", problems) {
+    for item in listed(slots, Expected::Slots, problems) {
         class.slots.extend(slot(item, problems));
     }
     for option in options {
         let keyword = option.list().and_then(|items| items.first()).and_then(Form::keyword);
         if !matches!(keyword, Some("documentation" | "default-initargs" | "metaclass")) && !option.is_error()
         {
-            problems.push(unexpected(option, "an option such as `(:documentation ...)`", SHAPE));
+            problems.push(Problem::Unexpected { found: option, expected: Expected::ClassOption });
         }
     }
     Some(class)
 }
 
-fn listed<'a>(form: &'a Form, wanted: &str, problems: &mut Problems) -> &'a [Form] {
+fn listed<'a>(form: &'a Form, expected: Expected, problems: &mut Problems) -> &'a [Form] {
     match form.list() {
         Some(items) => items,
         None => {
             if !form.is_error() && form.word() != Some("nil") {
-                problems.push(unexpected(form, wanted, SHAPE));
+                problems.push(Problem::Unexpected { found: form, expected });
             }
             &[]
         }
@@ -65,7 +62,7 @@ fn slot(form: &Form, problems: &mut Problems) -> Option<Slot> {
     };
     let Some(name) = ident(name) else {
         if !name.is_error() {
-            problems.push(unexpected(name, "the name of a slot", SHAPE));
+            problems.push(Problem::Unexpected { found: name, expected: Expected::SlotName });
         }
         return None;
     };
@@ -74,24 +71,13 @@ fn slot(form: &Form, problems: &mut Problems) -> Option<Slot> {
     while let Some((keyword, after)) = rest.split_first() {
         let Some(option) = keyword.keyword() else {
             if !keyword.is_error() {
-                problems.push(unexpected(
-                    keyword,
-                    "a slot option",
-                    "Slot options are keywords, each followed by its value.",
-                ));
+                problems.push(Problem::Unexpected { found: keyword, expected: Expected::SlotOption });
             }
             rest = after;
             continue;
         };
         let Some((setting, after)) = after.split_first() else {
-            problems.push(
-                Diagnostic::error(
-                    Code::WrongShape,
-                    keyword.span,
-                    format!("`:{}` has no value", clip(option)),
-                )
-                .primary("a value was expected after this option"),
-            );
+            problems.push(Problem::SlotOptionAlone { at: keyword.span, word: option });
             break;
         };
         rest = after;
@@ -102,23 +88,15 @@ fn slot(form: &Form, problems: &mut Problems) -> Option<Slot> {
             "finalp" => slot.finalp = setting.word() != Some("nil"),
             "documentation" => match &setting.kind {
                 FormKind::String(text) => slot.documentation = Some(text.clone()),
-                _ => problems.push(unexpected(
-                    setting,
-                    "a string",
-                    "Documentation is text in quotation marks.",
-                )),
+                _ => {
+                    problems.push(Problem::Unexpected { found: setting, expected: Expected::Documentation });
+                }
             },
             _ if SLOT_OPTIONS.contains(&option) => {}
-            _ => problems.push(
-                Diagnostic::warning(
-                    Code::UnknownSlotOption,
-                    keyword.span,
-                    format!("a slot has no option `:{}`", clip(option)),
-                )
-                .primary("left out, with its value")
-                .help(format!("The slot options are :{}.", SLOT_OPTIONS.join(", :")))
-                .meant(keyword.span, nearest(option, SLOT_OPTIONS).map(|near| format!(":{near}"))),
-            ),
+            _ => {
+                let near = nearest(option, SLOT_OPTIONS);
+                problems.push(Problem::SlotOption { at: keyword.span, word: option, near });
+            }
         }
     }
     Some(slot)
@@ -138,7 +116,7 @@ fn kind(form: &Form, problems: &mut Problems) -> Option<Type> {
             Some(name) => Type::Named(name),
             None => {
                 if !form.is_error() {
-                    problems.push(unexpected(form, "a type", "A type is a name or `(member value...)`."));
+                    problems.push(Problem::Unexpected { found: form, expected: Expected::Type });
                 }
                 return None;
             }

@@ -2,30 +2,22 @@
 
 use super::body::value;
 use super::ident;
+use super::problem::{ConditionSlip, Problem};
 use crate::ast::{Condition, SlotOf};
-use crate::code::Code;
-use crate::diagnostic::Diagnostic;
 use crate::form::Form;
 use crate::nearest::nearest;
 use crate::problem::Problems;
-use crate::words::usage;
 
 /// Parses a condition; `None` if it makes no sense, which is reported.
 pub(super) fn condition(form: &Form, problems: &mut Problems) -> Option<Condition> {
     if form.is_error() {
         return None;
     }
-    let bad = |problems: &mut Problems, at: &Form, message: String| {
-        problems.push(
-            Diagnostic::error(Code::BadCondition, at.span, message)
-                .primary("a condition was expected")
-                .help(usage("=")),
-        );
+    let bad = |problems: &mut Problems, at: &Form, slip: ConditionSlip| {
+        problems.push(Problem::Condition { at: at.span, slip });
+        None
     };
-    let Some((word, rest)) = form.call() else {
-        bad(problems, form, format!("{} is not a condition", form.describe()));
-        return None;
-    };
+    let Some((word, rest)) = form.call() else { return bad(problems, form, ConditionSlip::No(form)) };
     Some(match (word, rest) {
         ("and", parts) => Condition::And(parts.iter().filter_map(|part| condition(part, problems)).collect()),
         ("or", parts) => Condition::Or(parts.iter().filter_map(|part| condition(part, problems)).collect()),
@@ -37,47 +29,33 @@ pub(super) fn condition(form: &Form, problems: &mut Problems) -> Option<Conditio
                 ("at", Some("end")) => Condition::AtEnd(Box::new(part?)),
                 ("over", Some("all")) => Condition::OverAll(Box::new(part?)),
                 _ => {
-                    problems.push(wrong_time(word, when));
-                    return None;
+                    let near = meant_time(word, when);
+                    return bad(problems, when, ConditionSlip::Time { word, near });
                 }
             }
         }
         ("=" | "eq" | "eql" | "equal", [slot, right]) => match slot_of(slot) {
             Some(slot) => Condition::Equal(slot, value(right)),
-            None => {
-                bad(problems, slot, format!("the left side of `{word}` is not a slot of an object"));
-                return None;
-            }
+            None => return bad(problems, slot, ConditionSlip::NoSlot(word)),
         },
-        ("not" | "at" | "over" | "=", _) => {
-            bad(problems, form, format!("`{word}` has the wrong number of parts"));
-            return None;
-        }
+        ("not" | "at" | "over" | "=", _) => return bad(problems, form, ConditionSlip::Parts(word)),
         _ => match slot_of(form) {
             Some(slot) => Condition::Holds(slot),
-            None => {
-                bad(problems, form, format!("{} is not a condition", form.describe()));
-                return None;
-            }
+            None => return bad(problems, form, ConditionSlip::No(form)),
         },
     })
 }
 
-/// Neither `at :start`, `at :end` nor `over :all`. Not inlined: conditions nest, and the stack is small.
+/// What is meant where neither `at :start`, `at :end` nor `over :all` is written. Not inlined: conditions nest, and the stack is
+/// small.
 #[inline(never)]
-fn wrong_time(word: &str, when: &Form) -> Diagnostic {
-    let known: &[&str] = if word == "at" { &["start", "end"] } else { &["all"] };
-    let wanted = if word == "at" { "`:start` or `:end`" } else { "`:all`" };
-    let near = match (word, when.keyword().unwrap_or_default()) {
+fn meant_time(word: &str, when: &Form) -> Option<&'static str> {
+    match (word, when.keyword().unwrap_or_default()) {
         ("at", "begin" | "beginning") => Some("start"),
         ("at", "finish" | "stop") => Some("end"),
-        (_, written) => nearest(written, known.iter().copied()),
-    };
-    let help = known.iter().map(|time| format!("`({word} :{time} ...)`")).collect::<Vec<_>>().join(" or ");
-    Diagnostic::error(Code::BadCondition, when.span, format!("`{word}` needs {wanted}"))
-        .primary("found this")
-        .help(format!("Write {help}."))
-        .meant(when.span, near.map(|near| format!(":{near}")))
+        ("at", written) => nearest(written, ["start", "end"]),
+        (_, written) => nearest(written, ["all"]),
+    }
 }
 
 /// `(accessor object)`.

@@ -3,6 +3,7 @@
 use super::body::interval;
 use super::condition::condition;
 use super::options::{flag, pairs};
+use super::problem::{Expected, Problem, Twice};
 use super::slips;
 use crate::ast::{Condition, ControlProgram, DurationOf, Limits};
 use crate::form::Form;
@@ -23,10 +24,15 @@ pub(super) fn declare(declarations: &[Form], program: &mut ControlProgram, probl
         match item.call() {
             Some(("primitive", inside)) => {
                 program.primitive = true;
-                problems.extend(inside.first().map(slips::declaration::primitive_with));
+                let extra = |found| Problem::Unexpected { found, expected: Expected::EndOfPrimitive };
+                problems.extend(inside.first().map(extra));
             }
             Some(("duration", inside)) => match &program.duration {
-                Some(first) => problems.push(slips::declaration::second_duration(first.span, item.span)),
+                Some(DurationOf { span: first, .. }) => {
+                    let (first, again) = (*first, item.span);
+                    let whole = Some([first, again]);
+                    problems.push(Problem::Twice { what: Twice::Duration, first, again, whole });
+                }
                 None => {
                     program.duration = duration(item, inside, problems);
                     program.damaged |= program.duration.is_none();

@@ -1,17 +1,14 @@
 //! `(defpackage #:p (:use #:q) ...)` and `(in-package #:p)`.
 
 use super::DEFAULT_PACKAGE;
-use super::slips::{expected, unexpected};
+use super::problem::{Expected, Missing, Problem};
 use crate::ast::{Ident, Import, Package};
-use crate::code::Code;
-use crate::diagnostic::{Diagnostic, Edit};
-use crate::form::{Form, clip};
+use crate::form::Form;
 use crate::nearest::nearest;
 use crate::problem::Problems;
-use crate::words::usage;
 
 /// Those that say nothing about names are read and have no effect.
-const OPTIONS: [&str; 9] = [
+pub(crate) const OPTIONS: [&str; 9] = [
     "use",
     "import-from",
     "shadowing-import-from",
@@ -26,12 +23,12 @@ const OPTIONS: [&str; 9] = [
 /// Parses the definition of a package.
 pub(super) fn package(form: &Form, rest: &[Form], problems: &mut Problems) -> Option<Package> {
     let Some((name, rest)) = rest.split_first() else {
-        problems.push(expected(form, "this package has no name", usage("defpackage")));
+        problems.push(Problem::Missing { at: form.head(), what: Missing::PackageName });
         return None;
     };
     let Some(text) = name.designator() else {
         if !name.is_error() {
-            problems.push(unexpected(name, "the name of the package", usage("defpackage")));
+            problems.push(Problem::Unexpected { found: name, expected: Expected::PackageName });
         }
         return None;
     };
@@ -47,7 +44,7 @@ pub(super) fn package(form: &Form, rest: &[Form], problems: &mut Problems) -> Op
     for option in rest {
         let Some((keyword, values)) = option.list().and_then(|items| items.split_first()) else {
             if !option.is_error() {
-                problems.push(unexpected(option, "an option such as `(:use #:other)`", "Options are lists."));
+                problems.push(Problem::Unexpected { found: option, expected: Expected::PackageOption });
             }
             continue;
         };
@@ -59,7 +56,10 @@ pub(super) fn package(form: &Form, rest: &[Form], problems: &mut Problems) -> Op
                 for pair in values {
                     match names(pair.list().unwrap_or_default(), problems).as_slice() {
                         [short, of] => package.local_nicknames.push((short.clone(), of.clone())),
-                        _ => problems.push(unexpected(pair, "`(#:short #:package)`", "A local nickname and its package stand in a list: `(:local-nicknames (#:t #:tools))`.")),
+                        _ => {
+                            let expected = Expected::LocalNickname;
+                            problems.push(Problem::Unexpected { found: pair, expected });
+                        }
                     }
                 }
             }
@@ -72,17 +72,13 @@ pub(super) fn package(form: &Form, rest: &[Form], problems: &mut Problems) -> Op
                 }
             }
             Some(word) if OPTIONS.contains(&word) => {}
-            Some(word) => problems.push(
-                Diagnostic::error(
-                    Code::UnknownKeyword,
-                    keyword.span,
-                    format!("a package has no option `:{}`", clip(word)),
-                )
-                .primary("not an option of `defpackage`")
-                .help(format!("The options are :{}.", OPTIONS.join(", :")))
-                .meant(keyword.span, nearest(word, OPTIONS).map(|near| format!(":{near}"))),
-            ),
-            None => problems.push(unexpected(keyword, "a keyword such as `:use`", "Options are lists.")),
+            Some(word) => {
+                let near = nearest(word, OPTIONS);
+                problems.push(Problem::PackageOption { at: keyword.span, word, near });
+            }
+            None => {
+                problems.push(Problem::Unexpected { found: keyword, expected: Expected::PackageKeyword });
+            }
         }
     }
     Some(package)
@@ -96,7 +92,7 @@ pub(super) fn entered(
     problems: &mut Problems,
 ) -> Option<String> {
     let (Some(wanted), [name]) = (rest.first().and_then(Form::designator), rest) else {
-        problems.push(expected(form, "`in-package` needs one package", usage("in-package")));
+        problems.push(Problem::Missing { at: form.head(), what: Missing::PackageToEnter });
         return None;
     };
     if let Some(known) = packages.iter().find(|package| package.is_called(&wanted)) {
@@ -104,20 +100,8 @@ pub(super) fn entered(
     }
     if wanted != DEFAULT_PACKAGE {
         let known = packages.iter().map(|package| package.name.name.as_str());
-        let problem = Diagnostic::error(
-            Code::UnknownPackage,
-            name.span,
-            format!("the package `{}` is not defined", clip(&wanted)),
-        )
-        .primary("not defined above");
-        let definition = format!("(defpackage #:{wanted})");
-        problems.push(match nearest(&wanted, known) {
-            Some(near) => problem.designated(name.span, Some(near)),
-            None => problem.help(format!("Put `{}` before it.", clip(&definition))).suggest(
-                format!("Define the package `{wanted}`"),
-                [Edit::before(form.span, format!("{definition}\n"))],
-            ),
-        });
+        let near = nearest(&wanted, known);
+        problems.push(Problem::UnknownPackage { form: form.span, at: name.span, name: &wanted, near });
     }
     Some(wanted)
 }
@@ -129,11 +113,7 @@ fn names(forms: &[Form], problems: &mut Problems) -> Vec<Ident> {
         match form.designator() {
             Some(name) => found.push(Ident { package: None, name, span: form.span }),
             None if form.is_error() => {}
-            None => problems.push(unexpected(
-                form,
-                "a name",
-                "Names of packages and in packages are written `#:name`.",
-            )),
+            None => problems.push(Problem::Unexpected { found: form, expected: Expected::Designator }),
         }
     }
     found

@@ -3,12 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::body::bodies;
-use super::slips::{self, unexpected};
-use super::{declaration, ident};
+use super::problem::{DefinitionSlip, Expected, Named, Problem};
+use super::{declaration, ident, slips};
 use crate::ast::{ControlProgram, Ident};
-use crate::code::Code;
-use crate::diagnostic::Diagnostic;
-use crate::form::{Form, FormKind, clip};
+use crate::form::{Form, FormKind};
 use crate::problem::Problems;
 use crate::source::Span;
 use crate::words::Position;
@@ -53,7 +51,7 @@ pub(super) fn control_program(
             rest
         }
         (None, None) => {
-            problems.push(slips::definition::no_parameters(&program.name));
+            problems.push(Problem::Definition(DefinitionSlip::NoParameters { name: &program.name }));
             program.damaged = true;
             rest
         }
@@ -112,37 +110,22 @@ fn parameters(items: &[Form], problems: &mut Problems) -> Vec<Ident> {
     let mut firsts: BTreeMap<String, Span> = BTreeMap::new();
     for item in items {
         match ident(item) {
-            Some(name) if name.name.starts_with('&') => problems.push(
-                Diagnostic::error(
-                    Code::WrongShape,
-                    item.span,
-                    format!("`{}` is not understood here", clip(&name.name)),
-                )
-                .primary("a parameter was expected")
-                .help("Every parameter of a control program is given by place; there are no optional ones."),
-            ),
+            Some(name) if name.name.starts_with('&') => {
+                problems.push(Problem::ParameterMark { at: item.span, word: &name.name });
+            }
             Some(name) if matches!(name.name.as_str(), "t" | "nil") => {
-                let word = &name.name;
-                problems.push(reserved(item, word, "a parameter").change(item.span, format!("{word}-1")));
+                problems.push(Problem::Reserved { what: Named::Parameter, name: &name.name, at: item.span });
                 names.push(name);
             }
             Some(name) => {
                 if let Some(first) = firsts.insert(name.name.clone(), item.span) {
-                    let message = format!("the parameter `{}` is there twice", clip(&name.name));
-                    problems.push(
-                        Diagnostic::error(Code::DefinedTwice, item.span, message)
-                            .primary("again here")
-                            .label(first, "first here"),
-                    );
+                    let (what, again) = (Named::Parameter, item.span);
+                    problems.push(Problem::Repeated { what, name: &name.name, first, again });
                 }
                 names.push(name);
             }
             None if item.is_error() => {}
-            None => problems.push(unexpected(
-                item,
-                "the name of a parameter",
-                "Parameters are names: `(glider to)`.",
-            )),
+            None => problems.push(Problem::Unexpected { found: item, expected: Expected::Parameter }),
         }
     }
     names
@@ -154,7 +137,7 @@ pub(super) fn reserved_names(forms: &[Form], problems: &mut Problems) {
     for form in forms {
         let Some(("define-control-program", [name, ..])) = form.call() else { continue };
         let Some(word) = name.word().filter(|word| is_reserved(word)) else { continue };
-        problems.push(reserved(name, word, "a program"));
+        problems.push(Problem::Reserved { what: Named::Program, name: word, at: name.span });
         taken.push(word);
     }
     // What is wrong with the calls of such a program, read as the operator, follows from that.
@@ -169,15 +152,4 @@ pub(super) fn reserved_names(forms: &[Form], problems: &mut Problems) {
 
 fn is_reserved(word: &str) -> bool {
     Position::Body.has(word) || matches!(word, "declare" | "t" | "nil")
-}
-
-fn reserved(name: &Form, word: &str, what: &str) -> Diagnostic {
-    let meaning = match word {
-        "t" => "`t` means yes",
-        "nil" => "`nil` means no, or nothing",
-        _ => "it is an operator",
-    };
-    Diagnostic::error(Code::ReservedName, name.span, format!("{what} cannot be called `{word}`"))
-        .primary(meaning)
-        .help(format!("Give it another name, such as `{word}-1`, here and wherever it is used."))
 }

@@ -7,6 +7,7 @@ use crate::diagnostic::{Diagnostic, Edit};
 use crate::form::{Form, FormKind, clip, write};
 use crate::parse::{DEFAULT_PACKAGE, suffixed};
 use crate::source::Span;
+use crate::wording::parse;
 
 impl From<Problem> for Diagnostic {
     fn from(problem: Problem) -> Diagnostic {
@@ -162,8 +163,8 @@ impl From<Problem> for Diagnostic {
                 problem.suggest(format!("Create the program `{}`", name.name), [definition])
             }
             Problem::ForeignOperator { name, instead, cure } => {
-                let problem =
-                    unknown_operator(&name, format!("RMPL has no `{}`", clip(&name.name))).help(instead.help);
+                let problem = unknown_operator(&name, format!("RMPL has no `{}`", clip(&name.name)))
+                    .help(instead.help());
                 cure.into_iter().fold(problem, |problem, word| problem.change(name.span, word))
             }
             Problem::UnknownOperator { name, near } => {
@@ -208,7 +209,9 @@ impl From<Problem> for Diagnostic {
             Problem::UnknownName { name, near } => {
                 let problem = unknown_name(&name)
                     .help("A value is a number, a string, `t`, `nil`, a parameter, a name from `let`, `dotimes` or `defparameter`. A symbol is quoted: `'name`.");
-                suffixed(problem, name.span, &name.name)
+                suffixed(&name.name)
+                    .into_iter()
+                    .fold(problem, |problem, number| parse::suffixed(problem, name.span, number))
                     .meant(name.span, near.map(|near| name.with_name(&near)))
             }
             Problem::StrayUnit { name, unit } => unknown_name(&name)

@@ -1,47 +1,25 @@
 //! Declarations without their `declare`, and what fell out of a duration or never was in one.
 
-use super::{around, expected, head, one_of, text_of, twice, unexpected};
 use crate::ast::{Amount, AmountKind, ControlProgram, DurationOf};
-use crate::code::Code;
-use crate::diagnostic::{Diagnostic, Edit};
-use crate::form::{Form, FormKind, clip, write};
+use crate::form::{Form, FormKind};
 use crate::nearest::nearest;
 use crate::parse::amount::is_calculation;
 use crate::parse::declaration::{BOUNDS, CHOICE, Written};
 use crate::parse::options::options;
+use crate::parse::problem::{DeclarationSlip, Expected, Missing, Problem};
 use crate::problem::Problems;
-use crate::source::Span;
-use crate::words::{Position, usage};
-
-const SHAPE: &str = usage("duration");
+use crate::words::Position;
 
 /// The keywords of `simple`, and the one that is often put there.
 const ANYWHERE: [&str; 5] = [BOUNDS[0], BOUNDS[1], BOUNDS[2], BOUNDS[3], CHOICE[0]];
 
-/// `(primitive t)`.
-pub(in crate::parse) fn primitive_with(extra: &Form) -> Diagnostic {
-    unexpected(extra, "`)`", "`(primitive)` stands alone; the duration is a declaration of its own.")
-}
-
-/// A duration when there is one already.
-pub(in crate::parse) fn second_duration(first: Span, again: Span) -> Diagnostic {
-    let problem = twice("the duration", first, again);
-    problem.take_out("the first one", first).take_out("the second one", again)
-}
-
 /// What stands in a `requires` or an `effect` that is not the first or has not just one condition.
-pub(in crate::parse) fn not_one_condition(item: &Form, conditions: &[Form]) -> Option<Diagnostic> {
+pub(in crate::parse) fn not_one_condition<'a>(item: &'a Form, conditions: &[Form]) -> Option<Problem<'a>> {
     let (word, _) = item.call()?;
-    Some(match conditions {
-        [_] => Diagnostic::error(Code::KeywordTwice, item.span, format!("`{word}` is given twice"))
-            .primary("again here")
-            .help("Put the conditions into one: `(and ... ...)`."),
-        _ => expected(
-            item,
-            &format!("`{word}` takes one condition"),
-            "Several conditions are joined by `(and ... ...)`.",
-        ),
-    })
+    Some(Problem::Declaration(match conditions {
+        [_] => DeclarationSlip::SecondConditions { at: item.span, word },
+        _ => DeclarationSlip::Conditions { at: item.head(), word },
+    }))
 }
 
 /// Reports what is no declaration; the forms after what belongs to it.
@@ -53,39 +31,21 @@ pub(in crate::parse) fn no_declaration<'a>(
 ) -> &'a [Form] {
     program.damaged = true;
     if let Some((word, _)) = item.call() {
-        let message = format!("`{}` is not a declaration kirk knows", clip(word));
-        problems.push(
-            Diagnostic::error(Code::UnknownDeclaration, head(item), message)
-                .primary("not understood here")
-                .help(format!("The declarations are {}.", one_of(Position::Declaration.names())))
-                .meant(head(item), nearest(word, Position::Declaration.names())),
-        );
+        let near = nearest(word, Position::Declaration.names());
+        problems.push(Problem::Declaration(DeclarationSlip::Unknown { at: item.head(), word, near }));
     } else if item.keyword().is_some() {
         return fallen_out(item, rest, program, problems);
     } else if !item.is_error() {
-        let (help, bare) = match item.word().filter(|word| Position::Declaration.has(word)) {
-            Some("primitive") | None => {
-                ("A declaration is a list: `(primitive)`.".to_string(), item.word() == Some("primitive"))
-            }
-            Some(word) => (format!("A declaration is a list: `({word} ...)`."), false),
-        };
-        let problem = unexpected(item, "a declaration", &help);
-        problems.push(match bare {
-            true => problem.change(item.span, "(primitive)"),
-            false => problem,
-        });
+        let word = item.word().filter(|word| Position::Declaration.has(word));
+        problems.push(Problem::Declaration(DeclarationSlip::NoList { found: item, word }));
     }
     rest
 }
 
 /// Reports declarations that stand where the body belongs.
-pub(in crate::parse) fn bare(items: &[Form]) -> Diagnostic {
-    expected(
-        &items[0],
-        "this declaration stands outside of `(declare ...)`",
-        "Write `(declare (primitive) (duration (simple ...)))` after the parameter list.",
-    )
-    .suggest("Put `(declare ...)` around it", around(&items[0], &items[items.len() - 1], "(declare ", ")"))
+pub(in crate::parse) fn bare(items: &[Form]) -> Problem<'_> {
+    let (first, last) = (&items[0], &items[items.len() - 1]);
+    Problem::Declaration(DeclarationSlip::Bare { first: first.head(), all: first.span.to(last.span) })
 }
 
 /// True if what stands where the body belongs are declarations without their `declare`.
@@ -112,23 +72,13 @@ pub(in crate::parse) fn fallen_out<'a>(
     let after = &rest[usize::from(value.is_some())..];
     let word = keyword.keyword().unwrap_or_default();
     let Some(meant) = nearest(word, ANYWHERE) else {
-        problems.push(unexpected(keyword, "a list", "Keywords stand inside of the form they belong to."));
+        problems.push(Problem::Unexpected { found: keyword, expected: Expected::List });
         return after;
     };
-    let (owner, help) = match meant {
-        "contingent" => ("duration", "Write `(duration (simple ...) :contingent t)`.".to_string()),
-        _ => ("simple", format!("Write `(duration (simple ... :{meant} 5))`.")),
-    };
-    let message = format!("`:{meant}` belongs to `{owner}`, which is closed before it");
-    let mut problem = Diagnostic::error(Code::WrongShape, keyword.span, message)
-        .primary("a parenthesis too far out")
-        .help(help);
+    let mut from = None;
     if let Some(duration) = &mut program.duration {
-        problem = problem.label(last_byte(duration.span), "the duration already ends here");
         let home = if meant == "contingent" { duration.span } else { duration.bounds.span };
-        if let Some(value) = value {
-            problem = problem.suggest(format!("Move it into `{owner}`"), moved(meant, keyword, value, home));
-        }
+        from = Some((duration.span, home));
         let unknown = || Some(Amount { kind: AmountKind::Error, span: keyword.span });
         match meant {
             "contingent" => {
@@ -140,20 +90,9 @@ pub(in crate::parse) fn fallen_out<'a>(
             _ => {}
         }
     }
-    problems.push(problem);
+    let slip = DeclarationSlip::FallenOut { keyword: keyword.span, meant, value, from };
+    problems.push(Problem::Declaration(slip));
     after
-}
-
-/// The edits that move a keyword and its value to the end of another list.
-fn moved(name: &str, keyword: &Form, value: &Form, list: Span) -> [Edit; 2] {
-    [
-        Edit::before(last_byte(list), format!(" :{name} {}", write(value))),
-        Edit::replace(keyword.span.to(value.span), ""),
-    ]
-}
-
-fn last_byte(span: Span) -> Span {
-    Span { start: span.end - 1, ..span }
 }
 
 /// Reports what is wrong with a duration; what of it is clear.
@@ -163,12 +102,12 @@ pub(in crate::parse) fn no_duration(
     problems: &mut Problems,
 ) -> Option<DurationOf> {
     let Some((simple, rest)) = items.split_first() else {
-        problems.push(expected(form, "this duration is empty", SHAPE));
+        problems.push(Problem::Missing { at: form.head(), what: Missing::Duration });
         return None;
     };
     let Some(("simple", bounds)) = simple.call() else {
         if !simple.is_error() {
-            problems.push(no_simple(simple, rest, items));
+            problems.push(Problem::Declaration(no_simple(simple, rest, items)));
         }
         return None;
     };
@@ -177,7 +116,7 @@ pub(in crate::parse) fn no_duration(
     let outside = match rest.iter().position(is_bound) {
         // Bounds after the `)` of `simple`: the first says it for all.
         Some(first) => {
-            problems.push(closed_early(simple, rest, first));
+            problems.push(Problem::Declaration(closed_early(simple, rest, first)));
             options(rest, ANYWHERE, "simple", problems)
         }
         None => {
@@ -188,92 +127,50 @@ pub(in crate::parse) fn no_duration(
     let [.., misplaced] = inside;
     let [.., contingent] = outside;
     if let (Some(value), None) = (misplaced.filter(|form| !form.is_error()), contingent) {
-        problems.push(too_far_in(simple, bounds, value));
+        // `:contingent t` inside of `simple`.
+        let keyword = bounds.iter().take_while(|form| form.span != value.span).last().unwrap_or(value).span;
+        let slip = DeclarationSlip::TooFarIn { keyword, value, simple: simple.span };
+        problems.push(Problem::Declaration(slip));
     }
     let bounds = std::array::from_fn(|slot| inside[slot].or(outside[slot]));
     Some(Written { bounds, contingent: contingent.or(misplaced) }.duration(form, simple, problems))
 }
 
-/// `:contingent t` inside of `simple`.
-fn too_far_in(simple: &Form, inside: &[Form], value: &Form) -> Diagnostic {
-    let keyword = inside.iter().take_while(|form| form.span != value.span).last().unwrap_or(value);
-    let after = Edit::after(simple.span, format!(" :contingent {}", write(value)));
-    Diagnostic::error(
-        Code::WrongShape,
-        keyword.span.to(value.span),
-        "`:contingent` belongs to `duration`, not to `simple`",
-    )
-    .primary("a parenthesis too far in")
-    .help("Write `(duration (simple ...) :contingent t)`.")
-    .suggest("Move it out of `simple`", [Edit::replace(keyword.span.to(value.span), ""), after])
-}
-
 /// A bound behind the `)` of `simple`.
-fn closed_early(simple: &Form, rest: &[Form], first: usize) -> Diagnostic {
-    let word = rest[first].keyword().unwrap_or_default();
-    let message = format!("`:{word}` belongs to `simple`, which is closed before it");
-    let problem = Diagnostic::error(Code::WrongShape, rest[first].span, message)
-        .primary("a parenthesis too far out")
-        .label(last_byte(simple.span), "`simple` already ends here")
-        .help("Write `(duration (simple :lower-bound 15 :upper-bound 20) :contingent t)`.");
+fn closed_early<'a>(simple: &Form, rest: &'a [Form], first: usize) -> DeclarationSlip<'a> {
     let is_bound = |pair: &&[Form]| {
         matches!(pair, [keyword, value] if keyword.keyword().is_some_and(|word| BOUNDS.contains(&word))
             && value.keyword().is_none_or(|word| word == "infinity"))
     };
-    let count = rest.chunks(2).take_while(is_bound).count() * 2;
-    let Some(last) = count.checked_sub(1).map(|last| &rest[last]) else { return problem };
-    problem.suggest(
-        "Close `simple` after it",
-        [Edit::replace(last_byte(simple.span), ""), Edit::after(last.span, ")")],
-    )
+    DeclarationSlip::ClosedEarly {
+        keyword: rest[first].span,
+        word: rest[first].keyword().unwrap_or_default(),
+        simple: simple.span,
+        last: rest.chunks(2).take_while(is_bound).last().map(|pair| pair[1].span),
+    }
 }
 
 /// What stands in the place of `(simple ...)`.
-fn no_simple(simple: &Form, rest: &[Form], items: &[Form]) -> Diagnostic {
+fn no_simple<'a>(simple: &'a Form, rest: &'a [Form], items: &'a [Form]) -> DeclarationSlip<'a> {
+    if let Some((word, _)) = simple.call() {
+        return DeclarationSlip::NoSimple { found: simple, near: nearest(word, ["simple"]) };
+    }
     // Without its parentheses, it is as clear what is meant.
-    if simple.call().is_none() && (simple.word() == Some("simple") || simple.keyword().is_some()) {
-        return unwrapped(simple, rest, items);
+    if simple.word() == Some("simple") || simple.keyword().is_some() {
+        let given = if simple.keyword().is_some() { items } else { rest };
+        let is_bound = |pair: &&[Form]| pair[0].keyword().is_some_and(|word| word != "contingent");
+        let last = given.chunks(2).take_while(is_bound).last().and_then(<[Form]>::last);
+        return DeclarationSlip::BareBounds { first: simple, rest, last: last.map(|last| last.span) };
     }
-    let number = |form: &Form| matches!(form.kind, FormKind::Number(_)).then(|| write(form));
     let given = simple.list().filter(|_| rest.is_empty()).unwrap_or(items);
-    let numbers: Vec<String> = given.iter().map_while(number).collect();
-    let near = simple.call().and_then(|(word, _)| nearest(word, ["simple"]));
-    let problem = unexpected(simple, "`(simple ...)`", SHAPE).meant(head(simple), near);
-    let (Some(lower), None) = (numbers.first(), simple.call()) else { return problem };
-    let upper = numbers.get(1).unwrap_or(lower);
-    let written = format!("(simple :lower-bound {lower} :upper-bound {upper})");
-    let problem = problem.help(format!("Write `(duration {})`.", clip(&written)));
-    match (simple.list(), numbers.len()) {
-        (Some(_), 1 | 2) => problem.change(simple.span, written),
-        (None, count @ (1 | 2)) => problem.change(simple.span.to(items[count - 1].span), written),
-        _ => problem,
-    }
-}
-
-/// `(duration simple :lower-bound 1 ...)` or `(duration :lower-bound 1 ...)`.
-fn unwrapped(simple: &Form, rest: &[Form], items: &[Form]) -> Diagnostic {
-    let bounds: Vec<String> = rest.iter().map(text_of).collect();
-    let first = if simple.keyword().is_some() { text_of(simple) + " " } else { String::new() };
-    let problem = Diagnostic::error(
-        Code::WrongShape,
-        simple.span,
-        "the bounds of a duration stand in a form of their own",
-    )
-    .primary("`(simple` was expected here, and a `)` after the bounds")
-    .help(format!(
-        "Write `(duration (simple {first}{}))`; `:contingent t` comes after that form.",
-        clip(&bounds.join(" "))
-    ));
-    let (opening, given) = match simple.keyword() {
-        Some(_) => ("(simple ", items),
-        None => ("(", rest),
+    let numbers = given.iter().take_while(|form| matches!(form.kind, FormKind::Number(_))).count();
+    let (lower, upper, last) = match (given, numbers) {
+        (_, 0) => return DeclarationSlip::NoSimple { found: simple, near: None },
+        ([lower, ..], 1) => (lower, lower, Some(lower)),
+        ([lower, upper, ..], 2) => (lower, upper, Some(upper)),
+        (given, _) => (&given[0], &given[1], None),
     };
-    let is_bound = |pair: &&[Form]| pair[0].keyword().is_some_and(|word| word != "contingent");
-    let count = given.chunks(2).take_while(is_bound).map(<[Form]>::len).sum::<usize>();
-    match count.checked_sub(1) {
-        Some(last) => {
-            problem.suggest("Put the bounds into `(simple ...)`", around(simple, &given[last], opening, ")"))
-        }
-        None => problem,
-    }
+    // In a list, all of it is what was meant to be that list.
+    let all = last.map(|last| if simple.list().is_some() { simple.span } else { simple.span.to(last.span) });
+    DeclarationSlip::BareNumbers { found: simple, bounds: [lower, upper], all }
 }

@@ -2,6 +2,7 @@
 
 mod generate;
 mod judge;
+mod query;
 mod repair;
 mod run;
 
@@ -9,6 +10,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 pub(crate) use generate::{BoundsKind, Family, Generate, JsonOrRmpl, LinkKind, Size};
 pub(crate) use judge::{Check, CheckFormat, Compile, Delays, Stage, StageFormat, Verify};
+pub(crate) use query::Query;
 pub(crate) use repair::{Prefer, RepairOf, SlackOf};
 pub(crate) use run::{
     CompanionName, DriverEvents, DriverStarts, Live, Nature, Replay, Resume, Run, ScreenWhen, StrategyName,
@@ -29,7 +31,7 @@ pub(crate) struct Arguments {
 }
 
 /// Options of every command.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct Common {
     /// When to use colours in messages.
     #[arg(long, global = true, value_enum, default_value_t = Color::Auto, value_name = "WHEN")]
@@ -63,6 +65,9 @@ pub(crate) enum Command {
     Repair(RepairOf),
     /// Prints how much is left of a "yes": how far each bound can move, how late everything may start, how late news may be.
     Slack(SlackOf),
+    /// Asks a mission, a record or the journal of a mission, running or not: when can this still happen, what does it wait for, what
+    /// if that is heard then.
+    Query(Query),
     /// Prints what a mission is compiled to.
     Compile(Compile),
     /// Checks a recorded execution against a mission, independently of what executed it.

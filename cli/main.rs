@@ -2,6 +2,7 @@
 //!
 //! Exit status: 0 yes (controllable, completed, verified), 1 no, 2 the input or the command line is wrong.
 
+mod aftermath;
 mod args;
 mod check;
 mod compile;
@@ -18,7 +19,9 @@ mod judge;
 mod live;
 mod lsp;
 mod news;
+mod observations;
 mod output;
+mod query;
 mod repair;
 mod replace;
 mod replay;
@@ -58,6 +61,7 @@ fn execute(arguments: &Arguments) -> Status {
         Command::Check(check) => check::check(check, &arguments.common),
         Command::Repair(repair) => repair::repair_of(repair, &arguments.common),
         Command::Slack(slack) => slack::slack_of(slack, &arguments.common),
+        Command::Query(query) => query::query(query, &arguments.common),
         Command::Compile(compile) => compile::compile(compile, &arguments.common),
         Command::Verify(verify) => verify::verify(verify, &arguments.common),
         Command::Generate(generate) => generate::generate(generate, &arguments.common),

@@ -14,7 +14,7 @@ use crate::output::{Status, complain, remark};
 use crate::timetable::cells;
 
 /// Journals are written by machines.
-const LARGEST_JOURNAL: u64 = 1 << 30;
+pub(crate) const LARGEST_JOURNAL: u64 = 1 << 30;
 
 pub(crate) fn replay(arguments: &Replay, common: &Common) -> io::Result<Status> {
     let file = arguments.journal.display();

@@ -3,6 +3,7 @@
 use kirk_network::time::Interval;
 use kirk_runtime::{Dispatcher, Execution, How, Outcome, Row};
 
+use crate::aftermath;
 use crate::foreign::one_line;
 use crate::why::why;
 
@@ -14,6 +15,12 @@ pub(crate) fn timetable(execution: &Execution, by: Option<&Dispatcher>) -> Strin
             format!("failed at {} s: {} ({})", failure.time, one_line(&failure.detail), failure.reason.word())
         }
         (Outcome::Failed, None) => "failed".to_string(),
+        (Outcome::BrokenModel, Some(failure)) => {
+            let guaranteed = execution.what_if.as_ref().is_some_and(|what_if| what_if.guaranteed);
+            let until = if guaranteed { format!(" until {} s", execution.makespan) } else { String::new() };
+            format!("{}{until}", one_line(&failure.detail))
+        }
+        (Outcome::BrokenModel, None) => "the model is broken".to_string(),
         (Outcome::Running, _) => format!("at {} s", execution.makespan),
         (Outcome::Completed, _) => format!("completed in {} s", execution.makespan),
     };
@@ -30,6 +37,12 @@ pub(crate) fn timetable(execution: &Execution, by: Option<&Dispatcher>) -> Strin
         let line = format!("  {time:>at$}  {event:<name$}  {how:<in_which_way$}  {why}");
         text.push_str(line.trim_end());
         text.push('\n');
+    }
+    if let Some(what_if) = &execution.what_if {
+        text.push('\n');
+        for line in aftermath::lines(what_if) {
+            text.push_str(&format!("{}\n", one_line(&line)));
+        }
     }
     text
 }

@@ -81,7 +81,8 @@ pub(crate) fn verify(arguments: &Verify, common: &Common) -> io::Result<Status> 
     Ok(if violations.is_empty() { Status::Yes } else { Status::No })
 }
 
-fn read_execution(file: &str) -> Result<Execution, Box<(Source, Diagnostic)>> {
+/// Reads a record, or what a journal leads to.
+pub(crate) fn read_execution(file: &str) -> Result<Execution, Box<(Source, Diagnostic)>> {
     let bytes = read(file, LARGEST_RECORD).map_err(|message| {
         Box::new((
             Source::new(shown(file), ""),

@@ -7,18 +7,23 @@ use crate::foreign::one_line;
 
 /// What decided the time of a row, by the dispatcher that did; empty if nothing did, or it does not know.
 pub(crate) fn why(dispatcher: &Dispatcher, row: &Row) -> String {
+    let event = dispatcher.network().find(&row.event);
+    event.map_or(String::new(), |event| why_event(dispatcher, event, &row.event))
+}
+
+/// The same of an event under one of its names.
+pub(crate) fn why_event(dispatcher: &Dispatcher, event: EventId, called: &str) -> String {
     let network = dispatcher.network();
-    let Some(event) = network.find(&row.event) else { return String::new() };
-    let name = |other: EventId| format!("`{}`", one_line(name_beside(network, other, &row.event)));
+    let name = |other: EventId| format!("`{}`", one_line(name_beside(network, other, called)));
     let after = |other: EventId, distance: Duration| {
-        let beside = name_beside(network, other, &row.event);
+        let beside = name_beside(network, other, called);
         match other == network.origin() && beside == network.label(other) {
             true => format!("{distance} s after the start"),
             false => format!("{distance} s after {}", name(other)),
         }
     };
     // An event of Nature's may have other names beside the one it is heard by.
-    let is_itself = network.label(event) == row.event;
+    let is_itself = network.label(event) == called;
     let its_news =
         || if is_itself { "its news".to_string() } else { format!("the news of {}", label(network, event)) };
     match dispatcher.why(event) {

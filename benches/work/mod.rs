@@ -115,6 +115,7 @@ pub fn execute(plan: &Plan) -> Execution {
         seed: 1,
         observations: Vec::new(),
         internal: true,
+        what_if: false,
     };
     simulate(plan, "benchmark", &simulation).unwrap()
 }

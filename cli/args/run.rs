@@ -24,6 +24,9 @@ pub(crate) struct Run {
     /// A JSON object of event: time, as if each were given with --observe.
     #[arg(long, value_name = "FILE", requires = "simulate", help_heading = "Simulation")]
     pub(crate) observations: Option<String>,
+    /// Rehearse news that the model rules out, such as an overrun: what becomes of the mission, what is broken and what is kept.
+    #[arg(long, requires = "simulate", help_heading = "Simulation")]
+    pub(crate) what_if: bool,
     /// How Nature chooses durations and delays where the observations leave a choice.
     #[arg(long, value_enum, default_value_t = Nature::Upper, requires = "simulate", help_heading = "Simulation")]
     pub(crate) nature: Nature,

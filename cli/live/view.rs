@@ -99,6 +99,7 @@ impl View<'_> {
             Outcome::Running => "running",
             Outcome::Completed => "completed",
             Outcome::Failed => "failed",
+            Outcome::BrokenModel => "broken model",
         };
         let time = format!("{} s", self.now.as_micros().div_euclid(1_000_000));
         let help = if wide < ROOMY { "? help" } else { "? help   Ctrl-C stop" };

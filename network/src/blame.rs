@@ -54,7 +54,7 @@ impl Violation {
 }
 
 impl Source {
-    fn part(self) -> Part {
+    pub(crate) fn part(self) -> Part {
         match self {
             Source::Upper(index) => Part::RequirementUpper(index),
             Source::Lower(index) => Part::RequirementLower(index),

@@ -37,7 +37,8 @@
 //! walk over events.
 //!
 //! [`mod@punctual`] finds the events of a controllable network that can never be executed late.
-//! [`mod@windows`] says between which times each event can happen, [`news`] what becomes of late news.
+//! [`mod@windows`] says between which times each event can happen, [`mod@left`] between which it still can in the middle of an
+//! execution, [`news`] what becomes of late news.
 //!
 //! [`json`], [`graphml`], [`plain`], [`dot`] and [`text`] are the formats, [`generate`] makes networks to measure with.
 //!
@@ -72,6 +73,7 @@ mod hierarchy;
 pub mod json;
 pub mod kinds;
 pub mod least;
+pub mod left;
 pub mod merge;
 pub mod model;
 pub mod nearest;

@@ -16,7 +16,7 @@ use crate::check::{Verdict, check};
 use crate::dispatchable::{Consequences, consequences};
 use crate::merge::merge;
 use crate::model::{Delay, Network};
-use crate::reduce::reduce;
+use crate::reduce::{Place, Reduction, reduce};
 use crate::stnu::{Edge, Link, Rows, Stnu, add};
 use crate::time::Time;
 
@@ -38,13 +38,17 @@ pub fn windows(network: &Network) -> Option<Vec<Window>> {
     }
     let mut merged = merge(network);
     hear_early(&mut merged.network);
-    let reduction = reduce(&merged.network).ok()?;
+    let windows = of_reduction(&reduce(&merged.network).ok()?)?;
+    Some(merged.event_of.iter().map(|event| windows[event.index()]).collect())
+}
+
+/// The windows of the events of the network that was reduced; `None` if it is not controllable, or the numbers are too large.
+pub(crate) fn of_reduction(reduction: &Reduction) -> Option<Vec<Window>> {
     let stnu = &reduction.stnu;
     let followed = consequences(stnu).ok()??;
     let least = shortest(stnu, &projected(stnu, &followed, |link| link.lower), Direction::ToOrigin)?;
     let most = shortest(stnu, &projected(stnu, &followed, |link| link.upper), Direction::FromOrigin)?;
-    let window = |event: usize| {
-        let place = reduction.places[merged.event_of[event].index()];
+    let window = |place: &Place| {
         let earliest = add(-least[place.node as usize]?, place.earliest).ok()?;
         let latest = match most[place.node as usize] {
             Some(latest) => Some(Time::from_micros(add(latest, place.latest).ok()?)),
@@ -52,21 +56,26 @@ pub fn windows(network: &Network) -> Option<Vec<Window>> {
         };
         Some(Window { earliest: Time::from_micros(earliest), latest })
     };
-    (0..network.events().len()).map(window).collect()
+    reduction.places.iter().map(window).collect()
 }
 
 /// All news comes as early as it can; in chains, of which the reduction is not exact, at once.
-fn hear_early(network: &mut Network) {
+pub(crate) fn hear_early(network: &mut Network) {
+    for (index, chained) in is_chained(network).into_iter().enumerate() {
+        let delay = &mut network.link_mut(index).delay;
+        *delay = if chained { Delay::NONE } else { Delay { min: delay.min, max: delay.min.into() } };
+    }
+}
+
+/// For every link: another one starts where it ends, or it starts where another one ends.
+pub(crate) fn is_chained(network: &Network) -> Vec<bool> {
     let mut chained = vec![false; network.contingents().len()];
     for (index, link) in network.contingents().iter().enumerate() {
         if let Some(above) = network.link_of(link.from) {
             (chained[index], chained[above]) = (true, true);
         }
     }
-    for (index, chained) in chained.into_iter().enumerate() {
-        let delay = &mut network.link_mut(index).delay;
-        *delay = if chained { Delay::NONE } else { Delay { min: delay.min, max: delay.min.into() } };
-    }
+    chained
 }
 
 /// What is to be kept once Nature has chosen so for every link.

@@ -24,6 +24,7 @@
 
 mod flight;
 mod replan;
+mod so_far;
 mod why;
 
 use std::collections::VecDeque;
@@ -167,6 +168,11 @@ impl Dispatcher {
         dispatcher.fix(origin, Time::ZERO, How::Dispatched, Cause::Start);
         dispatcher.activate_from_origin();
         dispatcher
+    }
+
+    /// All that is known, beside a plan that does not fit it: to be looked at, not to go on with.
+    pub(crate) fn knowing(plan: Plan, settings: Settings, knowledge: Knowledge) -> Dispatcher {
+        Dispatcher::following(plan, settings, knowledge)
     }
 
     /// Nothing of the plan is executed yet, not even its origin.

@@ -1,6 +1,6 @@
 //! The record of an execution: what was fixed when, and why, as `kirk-execution/1` says it.
 
-use kirk_network::{Interval, Time};
+use kirk_network::{Duration, Interval, Time};
 use serde::{Deserialize, Serialize};
 
 use crate::input::Reason;
@@ -18,7 +18,7 @@ pub struct Execution {
     pub program: String,
     /// Did it come to its end?
     pub outcome: Outcome,
-    /// What ended it, if it failed.
+    /// What ended it, if it failed, or broke the model.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub failure: Option<Failure>,
     /// When the last event was over.
@@ -26,8 +26,54 @@ pub struct Execution {
     /// The seed of a simulation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
+    /// What became of the requirements, if Nature broke the model in a rehearsal.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub what_if: Option<Box<Aftermath>>,
     /// One row for each name, in time order.
     pub rows: Vec<Row>,
+}
+
+/// What becomes of the bounds of the requirements once news has come that the model rules out.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Aftermath {
+    /// All that is not decided yet is kept, if Nature keeps to the model from now on.
+    pub guaranteed: bool,
+    /// The bounds that are broken.
+    pub violated: Vec<Lost>,
+    /// The bounds that were kept or broken: what was heard leaves it open.
+    pub in_doubt: Vec<Lost>,
+    /// The bounds that have to be given up so that all others can be kept.
+    pub given_up: Vec<Lost>,
+    /// How many bounds are kept, or can be.
+    pub kept: usize,
+}
+
+/// A bound of a requirement that is not kept.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Lost {
+    /// The event it is measured from.
+    pub from: String,
+    /// The event it is measured to.
+    pub to: String,
+    /// Which bound.
+    pub bound: Side,
+    /// Its value.
+    pub value: Duration,
+    /// How long it was from one to the other, as far as that is known: what is nearest to the bound.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub found: Option<Duration>,
+}
+
+/// A bound of a requirement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Side {
+    /// At least.
+    Lower,
+    /// At most.
+    Upper,
 }
 
 /// How an execution ended.
@@ -40,6 +86,9 @@ pub enum Outcome {
     Failed,
     /// It is not over.
     Running,
+    /// Nature did not keep to the model, in a rehearsal: `failure` says whether the rest could be guaranteed.
+    #[serde(rename = "broken-model")]
+    BrokenModel,
 }
 
 /// Why an execution failed.

@@ -23,7 +23,7 @@ use crate::knowledge::Fixed;
 use crate::order::{Order, Orders, Patience};
 use crate::plan::Plan;
 use crate::rebuild::{Rebuild, Rebuilt};
-use crate::record::{all_over, missed_window, record, row};
+use crate::record::{all_over, and_fails, missed_window, record, row};
 use crate::replay::names;
 
 /// An executive in the middle of its mission.
@@ -293,8 +293,7 @@ impl Executive {
             Adoption::TooLate => {}
             Adoption::NoPlan => {
                 if let Some(Broken { event, arrived, said }) = self.broken.pop() {
-                    let detail = format!("{said}, and the rest cannot be guaranteed any more");
-                    self.fail(event, arrived, Reason::BrokenModel, detail);
+                    self.fail(event, arrived, Reason::BrokenModel, and_fails(&said));
                 }
             }
         }
@@ -336,6 +335,12 @@ impl Executive {
             reason: course.reason.clone(),
         };
         open.map(pending).collect()
+    }
+
+    /// The events of ours that the driver was told of and has not confirmed, and from when on each may count as executed.
+    pub(crate) fn begun(&self) -> Vec<(EventId, Time)> {
+        let open = self.orders.open.iter().filter(|order| self.dispatcher.is_in_flight(order.event));
+        open.map(|order| (order.event, order.course.due)).collect()
     }
 
     /// What will be done next if nothing is heard: when, with which event, and how.

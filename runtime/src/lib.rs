@@ -47,6 +47,7 @@
 //! Clocks, threads, sockets and files; names of forms (the compiler has them).
 
 pub mod activity;
+mod aftermath;
 mod agenda;
 pub mod cause;
 pub mod checkpoint;
@@ -60,6 +61,7 @@ mod measured;
 pub mod nature;
 mod order;
 pub mod plan;
+pub mod query;
 pub mod rebuild;
 mod record;
 pub mod replay;
@@ -70,13 +72,14 @@ pub use activity::{Handover, Scope, handovers, leave_out_natures, merge_companio
 pub use cause::Cause;
 pub use checkpoint::Checkpoint;
 pub use dispatcher::{Adoption, Dispatch, Dispatcher, Missed, Reception, Settings, Strategy};
-pub use execution::{Execution, Failure, How, Outcome, Row};
+pub use execution::{Aftermath, Execution, Failure, How, Lost, Outcome, Row, Side};
 pub use executive::{Executive, Output, Pending, Sending, Setup};
 pub use input::{Answer, Handled, Input, Reason, Why};
 pub use journal::{BadJournal, Clocks, Journal};
 pub use nature::{Impossible, Temper};
 pub use order::Patience;
 pub use plan::{NoPlan, Plan};
+pub use query::{Ended, Heard, Situation, Unheard, Waits};
 pub use rebuild::{Rebuild, Rebuilt};
 pub use replay::{Replay, recover, replay};
 pub use simulate::{Explained, Simulation, explained, simulate};

@@ -46,8 +46,12 @@ pub struct Nature<'a> {
     network: &'a Network,
     temper: Temper,
     seed: u64,
+    /// News that the model rules out arrives all the same.
+    what_if: bool,
     /// For each event, when its news must arrive.
     observations: Vec<Option<Time>>,
+    /// For each event, when it or something that follows it is heard of first: it happens no later.
+    by: Vec<Time>,
     children: Vec<Vec<EventId>>,
     /// Where the observations require each event to be, and where Nature has put it.
     required: Vec<Interval>,
@@ -75,11 +79,19 @@ impl<'a> Nature<'a> {
             network,
             temper,
             seed,
+            what_if: false,
             observations: by_event,
+            by: vec![Time::MAX; count],
             children,
             required: vec![Interval::ANYTIME; count],
             truth: vec![Time::ZERO; count],
         }
+    }
+
+    /// Nature who does not keep to the model where the observations do not: what is heard too late took longer, what is heard too early
+    /// took less, and news still takes as long as the model says, if that is at all possible.
+    pub fn beyond_the_model(self) -> Nature<'a> {
+        Nature { what_if: true, ..self }
     }
 
     /// All that follows from executing `root` at `time`, every event after its activation.
@@ -95,15 +107,17 @@ impl<'a> Nature<'a> {
         }
         self.require(&tree, root);
         self.truth[root.index()] = time;
+        if let Some(&early) = tree.iter().find(|event| self.by[event.index()] < time) {
+            return Err(self.first_impossible(early, root, time));
+        }
         tree.into_iter().map(|event| self.act(event, root, time)).collect()
     }
 
     /// Where the observations of each event and of all that follows it require it to be. Children come after parents.
     fn require(&mut self, tree: &[EventId], root: EventId) {
         for &event in tree {
-            let observed = self.observations[event.index()];
-            self.required[event.index()] =
-                observed.map_or(Interval::ANYTIME, |time| heard_now(&self.link(event), time));
+            self.required[event.index()] = self.told(event);
+            self.by[event.index()] = self.observations[event.index()].unwrap_or(Time::MAX);
         }
         for &event in tree.iter().rev() {
             let link = self.link(event);
@@ -111,17 +125,42 @@ impl<'a> Nature<'a> {
                 let before = self.required[event.index()].earlier(link.lower, link.upper);
                 let parent = &mut self.required[link.from.index()];
                 *parent = parent.and(before);
+                let by = self.by[event.index()].min(self.by[link.from.index()]);
+                self.by[link.from.index()] = by;
             }
         }
     }
 
+    /// Where an event is by its own news alone.
+    fn told(&self, event: EventId) -> Interval {
+        let observed = self.observations[event.index()];
+        observed.map_or(Interval::ANYTIME, |time| heard_now(&self.link(event), time))
+    }
+
+    /// Where an event can be: by the model if that goes with all news, else with its own, else by its own news against the model.
+    fn possible(&self, event: EventId) -> Option<Interval> {
+        let link = self.link(event);
+        let start = self.truth[link.from.index()];
+        let by_link = Interval::at(start).later(link.lower, link.upper);
+        let within = |told: Interval| Some(told.and(by_link)).filter(|possible| !possible.is_empty());
+        let possible = within(self.required[event.index()]);
+        if !self.what_if {
+            return possible;
+        }
+        let (by, told) = (self.by[event.index()], self.told(event));
+        let heard_later = Interval::new(told.earliest, told.latest.min(by));
+        possible.or_else(|| within(heard_later)).or_else(|| {
+            // It happens after what it follows and before it is heard of.
+            let earliest = told.earliest.max(by_link.earliest.min(told.latest));
+            Some(Interval::new(earliest.clamp(start, by), told.latest.clamp(start, by)))
+        })
+    }
+
     fn act(&mut self, event: EventId, root: EventId, root_time: Time) -> Result<Deed, Impossible> {
         let link = self.link(event);
-        let by_link = Interval::at(self.truth[link.from.index()]).later(link.lower, link.upper);
-        let possible = self.required[event.index()].and(by_link);
-        if possible.is_empty() {
+        let Some(possible) = self.possible(event) else {
             return Err(self.first_impossible(event, root, root_time));
-        }
+        };
         // Of its own for each event, so that Nature does the same whatever is done first.
         let mut random = fastrand::Rng::with_seed(
             self.seed ^ (u64::from(event.0) + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15),

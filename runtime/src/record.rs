@@ -39,6 +39,7 @@ pub(crate) fn record(
         failure,
         makespan: end,
         seed: None,
+        what_if: None,
         rows: rows.into_iter().map(|(_, row)| row).collect(),
     }
 }
@@ -93,4 +94,28 @@ pub(crate) fn missed_window(network: &Network, missed: Missed) -> Failure {
         )
     };
     Failure { event, time: missed.time, reason: Reason::MissedWindow, detail }
+}
+
+/// What is wrong with news that arrived when the model says it cannot.
+pub(crate) fn broken_model(
+    network: &Network,
+    event: EventId,
+    arrived: Time,
+    earliest: Time,
+    latest: Option<Time>,
+) -> String {
+    let window = match latest {
+        Some(latest) if arrived > latest => format!("too late: it was to come by {latest} s"),
+        _ => format!("too early: it was to come from {earliest} s on"),
+    };
+    format!("the model is broken: news of `{}` at {arrived} s is {window}", network.label(event))
+}
+
+/// The same when there is a plan with the news, and when there is none.
+pub(crate) fn and_goes_on(said: &str) -> String {
+    format!("{said}; the rest can still be guaranteed, the mission goes on")
+}
+
+pub(crate) fn and_fails(said: &str) -> String {
+    format!("{said}, and the rest cannot be guaranteed any more")
 }

@@ -5,11 +5,13 @@ use std::collections::BinaryHeap;
 
 use kirk_network::{EventId, Time};
 
-use crate::dispatcher::{Dispatcher, Reception, Settings, Strategy};
-use crate::execution::Execution;
+use crate::aftermath::aftermath;
+use crate::dispatcher::{Adoption, Dispatcher, Reception, Settings, Strategy};
+use crate::execution::{Execution, Failure, Outcome};
+use crate::input::Reason;
 use crate::nature::{Impossible, Nature, Temper};
 use crate::plan::Plan;
-use crate::record::{all_over, record};
+use crate::record::{all_over, and_fails, and_goes_on, broken_model, record};
 
 /// What to simulate.
 #[derive(Clone, Debug, Default)]
@@ -24,6 +26,8 @@ pub struct Simulation {
     pub observations: Vec<(EventId, Time)>,
     /// Also record the events no user wrote.
     pub internal: bool,
+    /// News that the model rules out is heard all the same, and dealt with as in real time: the rehearsal of an overrun.
+    pub what_if: bool,
 }
 
 /// Executes a plan against a simulated Nature, in virtual time.
@@ -46,56 +50,116 @@ pub struct Explained {
 /// The same, with what knows why each event was executed when it was.
 ///
 /// # Errors
-/// An observation that the model says cannot happen.
+/// An observation that the model says cannot happen; with `what_if`, one of what has not begun by then.
 pub fn explained(plan: &Plan, program: &str, simulation: &Simulation) -> Result<Explained, Impossible> {
     let network = plan.network();
-    let mut nature = Nature::new(network, simulation.nature, simulation.seed, &simulation.observations);
-    let mut dispatcher = Dispatcher::new(plan.clone(), Settings::of(simulation.strategy));
-    let mut truth: Vec<Option<Time>> = vec![None; network.events().len()];
-    let mut news: BinaryHeap<Reverse<(Time, EventId)>> = BinaryHeap::new();
-    let mut now = Time::ZERO;
-    loop {
-        // Acting and hearing take no time, so at one moment they may take turns until nothing more happens.
-        loop {
-            while let Some(&Reverse((time, event))) = news.peek().filter(|Reverse((time, _))| *time <= now) {
-                news.pop();
-                let reception = dispatcher.handle_observation(time, event);
-                debug_assert_eq!(reception, Reception::Accepted, "Nature keeps to the model");
-                plan_anew(&mut dispatcher, time);
-            }
-            dispatcher.handle_timeout(now);
-            while let Some(dispatch) = dispatcher.poll_dispatch() {
-                truth[dispatch.event.index()] = Some(dispatch.time);
-                for deed in nature.begin(dispatch.event, dispatch.time)? {
-                    truth[deed.event.index()] = Some(deed.truth);
-                    news.extend(deed.news.map(|time| Reverse((time, deed.event))));
-                }
-            }
-            if news.peek().is_none_or(|Reverse((time, _))| *time > now) {
-                break;
-            }
-        }
-        let Some(timeout) = dispatcher.poll_timeout() else { break };
-        now = match news.peek() {
-            Some(&Reverse((time, _))) if time < timeout => time,
-            _ => timeout,
-        };
-    }
+    let nature = Nature::new(network, simulation.nature, simulation.seed, &simulation.observations);
+    let mut run = Run {
+        nature: if simulation.what_if { nature.beyond_the_model() } else { nature },
+        dispatcher: Dispatcher::new(plan.clone(), Settings::of(simulation.strategy)),
+        truth: vec![None; network.events().len()],
+        news: BinaryHeap::new(),
+        broken: None,
+    };
+    let mut stopped = run.go_through()?;
     // News that was asked for is heard even if nothing is left to do with it.
-    while let Some(Reverse((time, event))) = news.pop() {
-        if simulation.observations.contains(&(event, time)) {
-            dispatcher.handle_observation(time, event);
-            plan_anew(&mut dispatcher, time);
+    while let (None, Some(Reverse((time, event)))) = (stopped, run.news.pop()) {
+        if simulation.observations.contains(&(event, time)) && !run.hear(time, event) {
+            stopped = Some(time);
         }
     }
-    let mut execution = record(&dispatcher, program, all_over(&dispatcher), simulation.internal, &truth);
+    let Run { dispatcher, truth, broken, .. } = run;
+    // What Nature has done against the model may be over later than anybody believes.
+    let over = || {
+        all_over(&dispatcher)
+            .max(truth.iter().flatten().copied().max().filter(|_| broken.is_some()).unwrap_or_default())
+    };
+    let end = stopped.unwrap_or_else(over);
+    let mut execution = record(&dispatcher, program, end, simulation.internal, &truth);
     execution.seed = Some(simulation.seed);
+    if let Some(failure) = broken {
+        execution.outcome = Outcome::BrokenModel;
+        execution.failure = Some(failure);
+        let so_far = dispatcher.so_far(end, &[]);
+        execution.what_if = Some(Box::new(aftermath(&dispatcher, &so_far, &truth)));
+    }
     Ok(Explained { execution, dispatcher })
 }
 
-/// Planning anew takes no time here.
-fn plan_anew(dispatcher: &mut Dispatcher, now: Time) {
-    while let Some(rebuild) = dispatcher.poll_rebuild(now) {
-        dispatcher.handle_rebuilt(rebuild.run());
+/// An execution on its way.
+struct Run<'a> {
+    nature: Nature<'a>,
+    dispatcher: Dispatcher,
+    /// When events truly happen, as far as Nature has decided.
+    truth: Vec<Option<Time>>,
+    /// News on its way.
+    news: BinaryHeap<Reverse<(Time, EventId)>>,
+    /// How the model was broken: first, or so that the rest cannot be guaranteed.
+    broken: Option<Failure>,
+}
+
+impl Run<'_> {
+    /// Goes on until nothing is left to do, or nothing can be: then that is returned as the time.
+    fn go_through(&mut self) -> Result<Option<Time>, Impossible> {
+        let mut now = Time::ZERO;
+        loop {
+            // Acting and hearing take no time, so at one moment they may take turns until nothing more happens.
+            loop {
+                while let Some((time, event)) = self.next_news().filter(|(time, _)| *time <= now) {
+                    self.news.pop();
+                    if !self.hear(time, event) {
+                        return Ok(Some(time));
+                    }
+                }
+                self.dispatcher.handle_timeout(now);
+                while let Some(dispatch) = self.dispatcher.poll_dispatch() {
+                    self.truth[dispatch.event.index()] = Some(dispatch.time);
+                    for deed in self.nature.begin(dispatch.event, dispatch.time)? {
+                        self.truth[deed.event.index()] = Some(deed.truth);
+                        self.news.extend(deed.news.map(|time| Reverse((time, deed.event))));
+                    }
+                }
+                if self.next_news().is_none_or(|(time, _)| time > now) {
+                    break;
+                }
+            }
+            let Some(timeout) = self.dispatcher.poll_timeout() else { return Ok(None) };
+            now = match self.next_news() {
+                Some((time, _)) if time < timeout => time,
+                _ => timeout,
+            };
+        }
+    }
+
+    fn next_news(&self) -> Option<(Time, EventId)> {
+        self.news.peek().map(|&Reverse(news)| news)
+    }
+
+    /// Takes news. False if the model does not allow it and the rest cannot be guaranteed: then the mission has failed.
+    fn hear(&mut self, time: Time, event: EventId) -> bool {
+        let Reception::Impossible { earliest, latest } = self.dispatcher.handle_observation(time, event)
+        else {
+            self.plan_anew(time);
+            return true;
+        };
+        let earliest = earliest.unwrap_or(time);
+        let said = broken_model(self.dispatcher.network(), event, time, earliest, latest);
+        self.dispatcher.handle_impossible(time, event);
+        let goes_on = self.plan_anew(time) != Some(Adoption::NoPlan);
+        if self.broken.is_none() || !goes_on {
+            let detail = if goes_on { and_goes_on(&said) } else { and_fails(&said) };
+            let event = self.dispatcher.network().label(event).to_string();
+            self.broken = Some(Failure { event, time, reason: Reason::BrokenModel, detail });
+        }
+        goes_on
+    }
+
+    /// Planning anew takes no time here.
+    fn plan_anew(&mut self, now: Time) -> Option<Adoption> {
+        let mut last = None;
+        while let Some(rebuild) = self.dispatcher.poll_rebuild(now) {
+            last = Some(self.dispatcher.handle_rebuilt(rebuild.run()));
+        }
+        last
     }
 }

@@ -100,6 +100,10 @@ impl Verifier<'_> {
             let detail = execution.failure.as_ref().map_or(String::new(), |f| format!(": {}", f.detail));
             self.say(None, format!("the execution is recorded as failed{detail}"));
         }
+        if execution.outcome == Outcome::BrokenModel {
+            let detail = execution.failure.as_ref().map_or(String::new(), |f| format!(": {}", f.detail));
+            self.say(None, format!("it is recorded that Nature did not keep to the model{detail}"));
+        }
         if execution.outcome == Outcome::Running {
             self.say(None, "the execution is recorded before its end".to_string());
         }

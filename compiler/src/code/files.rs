@@ -46,7 +46,8 @@ arrives once.",
 pub(super) const IMPOSSIBLE_OBSERVATION: Page = Page {
     meaning: "The model rules this news out: given when the activity was started, how long it can take and how late its news can
 be, the news cannot arrive at that time. A simulation with it would show nothing that can happen. Either the observation is
-wrong, or the bounds of the program are.",
+wrong, or the bounds of the program are. What becomes of the mission if it comes all the same is what `kirk run --simulate --what-if`
+rehearses, and `kirk query --heard` answers; but nobody can hear of what has not begun.",
     wrong: "",
     right: "",
 };

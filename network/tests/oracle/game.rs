@@ -24,6 +24,8 @@
 //! **How long to wait.** When no news is to come and no window opens later than now, waiting is pointless: all moves of a
 //! strategy that waits can be made that much earlier, which keeps every distance between them and every lower bound.
 
+pub mod reach;
+
 use std::collections::{BTreeMap, HashMap};
 
 use kirk_network::{Bound, Duration, EventId, Network};
@@ -231,6 +233,12 @@ impl Game {
 
     /// True if we win by executing `root` now. Its window contains now in all prospects.
     fn execute(&mut self, root: usize, left: u8, prospects: &[Prospect]) -> bool {
+        let outcomes = self.executed(root, left, prospects);
+        self.win_all(left & !(1 << root), outcomes)
+    }
+
+    /// What may come of executing `root` now: the set of news that arrives at once, with the prospect it belongs to.
+    fn executed(&self, root: usize, left: u8, prospects: &[Prospect]) -> Vec<(u8, Prospect)> {
         let left = left & !(1 << root);
         let mut outcomes = Vec::new();
         for prospect in prospects {
@@ -257,7 +265,7 @@ impl Game {
                 outcomes.push((arrived, next));
             }
         }
-        self.win_all(left, outcomes)
+        outcomes
     }
 
     /// True if we win by doing nothing until the next step.
@@ -270,40 +278,13 @@ impl Game {
         if prospects.iter().any(too_late) || !prospects.iter().any(more_to_come) {
             return false;
         }
-        let mut outcomes = Vec::new();
-        for prospect in prospects {
-            let mut next = *prospect;
-            let mut arrived = 0_u8;
-            for (link, news) in next.news.iter_mut().enumerate() {
-                if *news != 0 && *news != NEVER {
-                    *news -= 1;
-                    arrived |= u8::from(*news == 0) << link;
-                }
-            }
-            for root in members(left) {
-                next.low[root] = (next.low[root] - 1).max(0);
-                if next.high[root] != NEVER {
-                    next.high[root] -= 1;
-                }
-            }
-            outcomes.push((arrived, next));
-        }
-        self.win_all(left, outcomes)
+        self.win_all(left, waited(left, prospects))
     }
 
     /// True if we win whichever news arrives. `outcomes`: the set of news that arrives, with the prospect it belongs to.
     fn win_all(&mut self, left: u8, outcomes: Vec<(u8, Prospect)>) -> bool {
-        let mut parts: BTreeMap<u8, BTreeMap<[i16; MOST], Prospect>> = BTreeMap::new();
-        for (arrived, prospect) in outcomes {
-            let merged = parts.entry(arrived).or_default().entry(prospect.news).or_insert(prospect);
-            for root in members(left) {
-                merged.low[root] = merged.low[root].max(prospect.low[root]);
-                merged.high[root] = merged.high[root].min(prospect.high[root]);
-            }
-        }
         let mut positions = Vec::new();
-        for part in parts.into_values() {
-            let prospects: Vec<Prospect> = part.into_values().collect();
+        for prospects in parts(left, outcomes).into_values() {
             if !prospects.iter().all(|prospect| self.possible(left, prospect)) {
                 return false;
             }
@@ -361,6 +342,42 @@ impl Fate {
     fn offset_of(&self, place: Place) -> i16 {
         place.link.map_or(0, |link| self.offset[link])
     }
+}
+
+/// What may come of doing nothing until the next step: the set of news that arrives then, with the prospect it belongs to.
+fn waited(left: u8, prospects: &[Prospect]) -> Vec<(u8, Prospect)> {
+    let mut outcomes = Vec::new();
+    for prospect in prospects {
+        let mut next = *prospect;
+        let mut arrived = 0_u8;
+        for (link, news) in next.news.iter_mut().enumerate() {
+            if *news != 0 && *news != NEVER {
+                *news -= 1;
+                arrived |= u8::from(*news == 0) << link;
+            }
+        }
+        for root in members(left) {
+            next.low[root] = (next.low[root] - 1).max(0);
+            if next.high[root] != NEVER {
+                next.high[root] -= 1;
+            }
+        }
+        outcomes.push((arrived, next));
+    }
+    outcomes
+}
+
+/// The prospects that remain with each set of news that may arrive.
+fn parts(left: u8, outcomes: Vec<(u8, Prospect)>) -> BTreeMap<u8, Vec<Prospect>> {
+    let mut parts: BTreeMap<u8, BTreeMap<[i16; MOST], Prospect>> = BTreeMap::new();
+    for (arrived, prospect) in outcomes {
+        let merged = parts.entry(arrived).or_default().entry(prospect.news).or_insert(prospect);
+        for root in members(left) {
+            merged.low[root] = merged.low[root].max(prospect.low[root]);
+            merged.high[root] = merged.high[root].min(prospect.high[root]);
+        }
+    }
+    parts.into_iter().map(|(arrived, part)| (arrived, part.into_values().collect())).collect()
 }
 
 /// The numbers in a set of bits.

@@ -92,6 +92,11 @@ impl Dispatcher {
         self.in_flight.iter().any(|flight| flight.event == event)
     }
 
+    /// True from the dispatch of an event until somebody says that it was executed.
+    pub(crate) fn is_unconfirmed(&self, event: EventId) -> bool {
+        self.in_flight.iter().any(|flight| flight.event == event && flight.executed.is_none())
+    }
+
     pub(super) fn execute(&mut self, time: Time, node: u32) {
         let due = self.agenda.due(node);
         if !self.in_time(due, time, node) {

@@ -5,6 +5,7 @@ use kirk_network::{Duration, EventId, Time};
 use super::{Broken, Executive, Output};
 use crate::dispatcher::Reception;
 use crate::input::{Answer, Why};
+use crate::record::{and_goes_on, broken_model};
 
 impl Executive {
     /// Takes news that arrived at a time, usually now.
@@ -62,12 +63,7 @@ impl Executive {
                 Answer::Accepted
             }
             Reception::Impossible { earliest: Some(earliest), latest } => {
-                let window = match latest {
-                    Some(latest) if arrived > latest => format!("too late: it was to come by {latest} s"),
-                    _ => format!("too early: it was to come from {earliest} s on"),
-                };
-                let name = self.network().label(event);
-                let said = format!("the model is broken: news of `{name}` at {arrived} s is {window}");
+                let said = broken_model(self.network(), event, arrived, earliest, latest);
                 self.dispatcher.handle_impossible(arrived, event);
                 self.broken.push(Broken { event, arrived, said });
                 Answer::Accepted
@@ -92,9 +88,7 @@ impl Executive {
     /// There is a plan with all the news, whatever the model says.
     pub(super) fn mend(&mut self) {
         for Broken { said, .. } in std::mem::take(&mut self.broken) {
-            self.outputs.push_back(Output::Warning(format!(
-                "{said}; the rest can still be guaranteed, the mission goes on"
-            )));
+            self.outputs.push_back(Output::Warning(and_goes_on(&said)));
         }
     }
 

@@ -30,6 +30,7 @@ fn one_of_each() -> [Happening; 5] {
         failure: None,
         makespan: at(2_000_000),
         seed: None,
+        what_if: None,
         rows: vec![row.clone()],
     };
     [

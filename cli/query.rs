@@ -307,7 +307,7 @@ fn moment(text: &str) -> Result<Time, String> {
 /// The event of a name.
 fn event(network: &Network, name: &str) -> Result<EventId, String> {
     network.find(name).ok_or_else(|| {
-        let names = network.events().iter().flat_map(|event| &event.names);
+        let names = network.events().iter().flat_map(|event| event.names.iter());
         let names = names.filter(|name| !name.internal).map(|name| name.text.as_str());
         let near = nearest(name, names).map(|near| format!("; did you mean `{near}`?"));
         format!("there is no event `{name}`{}", near.unwrap_or_default())

@@ -42,6 +42,15 @@ pub fn conflict(merged: &Network) -> Result<Option<Conflict>, TooLarge> {
     explain(merged, reduce(merged))
 }
 
+/// Some conflict of a merged network as it was found, not minimal, and its `conservative` not settled; `None` if the network is
+/// controllable. What it says of the bounds is as true as what a minimal one says, and is had at the price of the verdict.
+///
+/// # Errors
+/// [`TooLarge`] if the durations add up to more than 64-bit microseconds can hold.
+pub fn any_conflict(merged: &Network) -> Result<Option<Conflict>, TooLarge> {
+    first_conflict(merged, &reduce(merged))
+}
+
 fn explain(
     network: &Network,
     reduction: Result<Reduction, ReduceError>,

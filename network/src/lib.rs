@@ -33,7 +33,8 @@
 //!
 //! Around the verdict, each asking for it at other values of the bounds ([`vary`]): [`least`] finds the least change of a
 //! bound that turns a "no" into a "yes", [`mod@slack`] how far a bound can move before a "yes" is lost, [`promise`] by when and
-//! how long something can be promised. [`repair`] finds the cheapest changes of several bounds. [`mod@walk`] tells a conflict as a
+//! how long something can be promised. [`repair`] finds the cheapest changes of several bounds, by linear
+//! programs ([`program`]). [`mod@walk`] tells a conflict as a
 //! walk over events.
 //!
 //! [`mod@punctual`] finds the events of a controllable network that can never be executed late.
@@ -80,6 +81,7 @@ pub mod nearest;
 pub mod news;
 pub mod plain;
 pub mod precedence;
+pub mod program;
 pub mod promise;
 pub mod punctual;
 mod radix;

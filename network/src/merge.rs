@@ -37,8 +37,8 @@ pub fn merge(network: &Network) -> Merged {
     merge_but(network, &BTreeSet::new())
 }
 
-/// The same, but some requirements are left to be requirements.
-pub(crate) fn merge_but(network: &Network, apart: &BTreeSet<usize>) -> Merged {
+/// The same, but some requirements, by index, are left to be requirements.
+pub fn merge_but(network: &Network, apart: &BTreeSet<usize>) -> Merged {
     // A join that would let a contingent link lead back to its own start is left out. Looking for that is quadratic
     // in long chains, and almost no network has one, so look only if the quick way runs into it.
     merge_with(network, apart, Caution::Quick).unwrap_or_else(|_| {

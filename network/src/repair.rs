@@ -13,7 +13,6 @@
 
 mod clause;
 mod lever;
-mod program;
 mod search;
 
 use std::cmp::Reverse;

@@ -13,36 +13,20 @@ use crate::conflict::Part;
 use crate::controllability::negative_cycle_ahead;
 use crate::merge::{Merged, merge, merge_but};
 use crate::model::{ContingentLink, Delay, EventId, Network, Requirement};
+use crate::program::Inequality;
 use crate::reduce::{ReduceError, Reduction, reduce};
 use crate::stnu::TooLarge;
 
 use super::Plan;
 use super::lever::{joins, roots, spread, way_to};
 
-/// `sum of factor * amount >= least`, for knobs by their numbers.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Inequality {
-    pub(super) terms: BTreeMap<usize, i64>,
-    pub(super) least: i128,
-}
-
 /// Alternatives: at least one holds.
 pub(super) type Clause = Vec<Inequality>;
 
-impl Inequality {
-    /// By how much it is violated; not positive if it holds.
-    pub(super) fn lacks(&self, plan: &Plan) -> i128 {
-        let amount = |knob: &usize| plan.get(knob).copied().unwrap_or(0);
-        let sum: i128 =
-            self.terms.iter().map(|(knob, factor)| i128::from(*factor) * i128::from(amount(knob))).sum();
-        self.least - sum
-    }
-
-    /// That a form grows by at least so much from a plan on.
-    fn beyond(plan: &Plan, terms: BTreeMap<usize, i64>, by: i64) -> Inequality {
-        let here = Inequality { terms, least: 0 };
-        Inequality { least: i128::from(by) - here.lacks(plan), ..here }
-    }
+/// That a form grows by at least so much from a plan on.
+fn beyond(plan: &Plan, terms: BTreeMap<usize, i64>, by: i64) -> Inequality {
+    let here = Inequality { terms, least: 0 };
+    Inequality { least: i128::from(by) - here.lacks(plan), ..here }
 }
 
 /// Which knob turns which bound.
@@ -190,7 +174,7 @@ impl Site<'_> {
                 factors.push((Part::DelayMax(link), -times));
             }
         }
-        Ok(Inequality::beyond(self.plan, self.levers.terms(factors), tally.total()?.saturating_neg()))
+        Ok(beyond(self.plan, self.levers.terms(factors), tally.total()?.saturating_neg()))
     }
 
     /// True if the shortest delay of a link is moved by the longest one, or would be if that were any less.
@@ -222,7 +206,7 @@ impl Site<'_> {
             let width = link.upper.as_micros() - link.lower.as_micros();
             let Some(max) = link.delay.max.finite() else {
                 let terms = self.levers.terms([(Part::DelayMax(index), 1)]);
-                alternatives.push(Inequality::beyond(self.plan, terms, 1));
+                alternatives.push(beyond(self.plan, terms, 1));
                 continue;
             };
             // What Nature can choose between, less what the news leaves open.
@@ -232,14 +216,14 @@ impl Site<'_> {
                 if vary > 0 && own.iter().any(|(part, _)| self.levers.by_part.contains_key(part)) {
                     let terms = own.into_iter().chain(news).map(|(part, by)| (part, -by));
                     let terms = self.levers.terms(terms);
-                    alternatives.push(Inequality::beyond(self.plan, terms, width - vary));
+                    alternatives.push(beyond(self.plan, terms, width - vary));
                 }
             } else {
                 // A longest delay with the shortest at its heels leaves no less open.
                 let varies = news.into_iter().filter(|_| !self.follows(index));
                 let narrows = way_to(network, index).flat_map(narrower);
                 let terms = self.levers.terms(varies.chain(narrows));
-                alternatives.push(Inequality::beyond(self.plan, terms, 1 - (spread(network, index) - vary)));
+                alternatives.push(beyond(self.plan, terms, 1 - (spread(network, index) - vary)));
             }
         }
         alternatives

@@ -12,11 +12,11 @@ use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 
 use crate::check::{Verdict, check};
 use crate::model::Network;
+use crate::program::{Column, Inequality, Outcome, solve};
 use crate::vary::{Change, Probe, changed};
 
-use super::clause::{Answer, Clause, Inequality, Levers, ask};
+use super::clause::{Answer, Clause, Levers, ask};
 use super::lever::Lever;
-use super::program::{Column, Outcome, solve};
 use super::{Allowed, Plan, Repair};
 
 /// A linear program of so many inequalities takes about as long as a verdict.

@@ -1,26 +1,46 @@
 //! The linear program: the cheapest amounts that keep some inequalities.
 //!
+//! What repairs are made of, and the promises that agents of a team make one another.
 //! It is solved in floating point, in seconds; so nothing it says is believed. Whoever uses it rounds, and asks for the verdict.
 
 use std::collections::BTreeMap;
 
 use good_lp::{Expression, ResolutionError, Solution, SolverModel, microlp, variable, variables};
 
-use super::clause::Inequality;
+/// `sum of factor * amount >= least`, for amounts by their numbers.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Inequality {
+    /// The factors.
+    pub terms: BTreeMap<usize, i64>,
+    /// What the sum is at least.
+    pub least: i128,
+}
+
+impl Inequality {
+    /// By how much it is violated; not positive if it holds. An amount that is not given is 0.
+    pub fn lacks(&self, amounts: &BTreeMap<usize, i64>) -> i128 {
+        let amount = |number: &usize| amounts.get(number).copied().unwrap_or(0);
+        let sum: i128 =
+            self.terms.iter().map(|(number, factor)| i128::from(*factor) * i128::from(amount(number))).sum();
+        self.least - sum
+    }
+}
 
 /// An amount to choose.
-pub(super) struct Column {
+pub struct Column {
     /// What a microsecond costs.
-    pub(super) weight: u64,
-    /// The least and the greatest amount.
-    pub(super) low: i64,
-    pub(super) high: i64,
+    pub weight: u64,
+    /// The least amount.
+    pub low: i64,
+    /// The greatest amount.
+    pub high: i64,
 }
 
 /// What came out.
-pub(super) enum Outcome {
-    /// The amounts, in microseconds, by knob.
+pub enum Outcome {
+    /// The amounts, in microseconds, by number.
     Optimum(BTreeMap<usize, f64>),
+    /// There are none.
     Infeasible,
     /// The solver has lost its way among its numbers.
     Failed,
@@ -31,8 +51,8 @@ const MICROS: f64 = 1e6;
 /// Costs differ by no more than this factor, as what is much less than the largest counts for nothing in floating point.
 const MOST: f64 = 1e8;
 
-/// The cheapest amounts of these knobs, with all else at nothing, that keep all of `rows`.
-pub(super) fn solve(columns: &BTreeMap<usize, Column>, rows: &[&Inequality]) -> Outcome {
+/// The cheapest amounts of these, with all else at nothing, that keep all of `rows`.
+pub fn solve(columns: &BTreeMap<usize, Column>, rows: &[&Inequality]) -> Outcome {
     if columns.is_empty() {
         return Outcome::Optimum(BTreeMap::new());
     }

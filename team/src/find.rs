@@ -6,12 +6,15 @@
 
 use kirk_network::stnu::TooLarge;
 use kirk_network::{Conflict, Duration, Network};
+use kirk_runtime::Strategy;
 
 use crate::model::{AgentId, Team};
 use crate::promise::Promise;
 use crate::rules::Rules;
 use crate::search::{Attempt, Finder};
 use crate::shortage::{NotFound, shortage};
+use crate::simulate::{Ready, Simulation};
+use crate::weather::{Mood, Weather};
 use crate::whole::Whole;
 
 /// How to look for promises.
@@ -23,15 +26,16 @@ pub struct Options {
     pub rounds: usize,
     /// So many ways at most to choose what promises are measured from and who keeps what.
     pub choices: usize,
-    /// Whether promises are to begin as early as others can bear, so that the team is done sooner.
-    pub early: bool,
+    /// Whether to look for promises with which the team is done sooner, once there are some that are measured from what each agent
+    /// waits for: such as from the origin, and such that begin as early as others can bear.
+    pub soonest: bool,
     #[doc(hidden)]
     pub rules: Rules,
 }
 
 impl Default for Options {
     fn default() -> Options {
-        Options { tolerance: Duration::ZERO, rounds: 40, choices: 60, early: true, rules: Rules::ALL }
+        Options { tolerance: Duration::ZERO, rounds: 40, choices: 60, soonest: true, rules: Rules::ALL }
     }
 }
 
@@ -80,9 +84,36 @@ pub fn find(team: &Team, options: &Options) -> Result<Verdict, TooLarge> {
     }
     let mut finder = Finder::new(team, &whole, options);
     Ok(match finder.search()? {
-        Attempt::Found(found) => Verdict::Yes(finder.agreement(&found)),
-        Attempt::Failed(failure) => Verdict::NotFound(shortage(&finder, &failure)?),
+        Attempt::Found(found) => {
+            let agreements = found.iter().map(|found| finder.agreement(found)).collect();
+            Verdict::Yes(soonest(team, agreements))
+        }
+        Attempt::Failed(failure) => Verdict::NotFound(shortage(&finder, &failure)),
     })
+}
+
+/// The agreement with which the team is done soonest: once if all takes as long as it may, and on two days like any other.
+fn soonest(team: &Team, mut agreements: Vec<Agreement>) -> Agreement {
+    let ends = |agreement: &Agreement| -> i64 {
+        let Ok(ready) = Ready::new(team, agreement) else { return i64::MAX };
+        let day = |(seed, mood): (u64, Mood)| {
+            let weather = Weather { delays: mood, ..Weather::default() };
+            let simulation = Simulation {
+                strategy: Strategy::Buffer,
+                nature: mood,
+                weather,
+                seed,
+                ..Simulation::default()
+            };
+            ready.run(&simulation).makespan.as_micros()
+        };
+        [(0, Mood::Longest), (1, Mood::Random), (2, Mood::Random)].into_iter().map(day).sum()
+    };
+    let at = match agreements.len() {
+        1 => 0,
+        _ => (0..agreements.len()).min_by_key(|&at| ends(&agreements[at])).unwrap_or(0),
+    };
+    agreements.swap_remove(at)
 }
 
 /// True if promises are found.

@@ -34,6 +34,8 @@
 //! | make ready | `whole` | team | one network: joins of one owner made one, joints of nobody composed away |
 //! | share out | `views` | whole, and what promises are measured from | views without numbers |
 //! | find | `search`, `cuts` | views | promises such that all views are controllable |
+//! | execute | [`Ready`] | views, Nature, the weather on the links | when each event happened, and who heard of it when |
+//! | verify | [`verify()`] | what happened | what of the team's network did not hold |
 //!
 //! # Words
 //!
@@ -59,11 +61,17 @@ mod find;
 mod promise;
 mod search;
 mod shortage;
+mod simulate;
+mod verify;
 mod views;
+mod weather;
 mod whole;
 
 pub use find::{Agreement, Options, Verdict, View, find};
 pub use model::{AgentId, Link, Place, Team, TeamError};
 pub use promise::Promise;
 pub use rules::Rules;
-pub use shortage::{Cause, Change, Member, NotFound, Remedy};
+pub use shortage::{Cause, Change, Member, NotFound, Remedy, remedies};
+pub use simulate::{Ready, Simulation, TeamExecution, Trouble};
+pub use verify::{Late, Violation, late_news, verify};
+pub use weather::{Mood, Partition, Weather};

@@ -8,8 +8,9 @@ use std::cmp::Reverse;
 use std::collections::{BTreeSet, BinaryHeap};
 
 use kirk_network::check::any_conflict;
+use kirk_network::merge::merge;
 use kirk_network::stnu::TooLarge;
-use kirk_network::{Bound, Duration, EventId};
+use kirk_network::{Bound, Conflict, Duration, EventId};
 
 use crate::cuts::{Blame, Cut, Goal, Solved, solve_cuts};
 use crate::distances::{Around, Distances, FAR, Step};
@@ -34,7 +35,8 @@ pub(crate) struct Finder<'a> {
 
 /// What came of the search.
 pub(crate) enum Attempt {
-    Found(Found),
+    /// One or two, to choose from.
+    Found(Vec<Found>),
     Failed(Failure),
 }
 
@@ -84,28 +86,29 @@ impl<'a> Finder<'a> {
         }
     }
 
-    /// Both ways to begin, then what their cores suggest.
+    /// Both ways to begin; if neither leads to anything, what their cores suggest.
     pub(crate) fn search(&mut self) -> Result<Attempt, TooLarge> {
-        let prompt = self.nearest();
-        let agreed = self.all_from_the_origin();
         let mut failure = None;
+        let mut found = Vec::new();
         let mut seen: BTreeSet<Choice> = BTreeSet::new();
         let mut open = BinaryHeap::new();
-        for (order, choice) in [prompt, agreed].into_iter().enumerate() {
-            open.push(Reverse((0_usize, order, choice)));
+        let mut made = 0;
+        for choice in [self.nearest(), self.all_from_the_origin()] {
+            open.push(Reverse((0_usize, made, choice)));
+            made += 1;
         }
-        let mut made = 2;
         while seen.len() < self.options.choices
             && let Some(Reverse((depth, _, choice))) = open.pop()
         {
+            if !found.is_empty() && (depth > 0 || !self.options.soonest) {
+                break;
+            }
             if !seen.insert(choice.clone()) {
                 continue;
             }
             match self.attempt(&choice)? {
-                Some(Tried::Found(found)) => {
-                    let found = if self.options.early { self.earlier(found)? } else { found };
-                    return Ok(Attempt::Found(found));
-                }
+                Some(Tried::Found(promises)) if self.options.soonest => found.push(self.earlier(promises)?),
+                Some(Tried::Found(promises)) => found.push(promises),
                 Some(Tried::Core(core, plan, views)) => {
                     for next in self.others(&choice, &core, &plan, &views) {
                         made += 1;
@@ -116,7 +119,11 @@ impl<'a> Finder<'a> {
                 Some(Tried::Lost) | None => {}
             }
         }
-        Ok(Attempt::Failed(failure.unwrap_or_default()))
+        Ok(if found.is_empty() {
+            Attempt::Failed(failure.unwrap_or_default())
+        } else {
+            Attempt::Found(found)
+        })
     }
 
     /// One choice; `None` if what is promised would lead in a circle.
@@ -151,7 +158,7 @@ impl<'a> Finder<'a> {
                     continue;
                 }
                 let view = self.numbered(outline, &promises, true);
-                let conflict = any_conflict(&view.network)?;
+                let conflict = self.conflict(&view)?;
                 let is_fine = conflict.is_none();
                 cuts.extend(conflict.map(|it| Cut::new(&view, outline.agent, it, &promises)));
                 *slot = Some((view, is_fine));
@@ -187,6 +194,15 @@ impl<'a> Finder<'a> {
             }
         }
         Ok(Tried::Lost)
+    }
+
+    /// Some conflict of a view. There is nothing in it that could be made one.
+    fn conflict(&self, view: &Numbered) -> Result<Option<Conflict>, TooLarge> {
+        if self.options.rules.no_merging {
+            return any_conflict(&view.network);
+        }
+        let merged = merge(&view.network);
+        Ok(any_conflict(&merged.network)?.map(|conflict| merged.unmerge(&conflict, &view.network)))
     }
 
     /// The same promises with beginnings as early as the views bear it.
@@ -232,26 +248,26 @@ impl<'a> Finder<'a> {
             for event in open {
                 settled[event.index()] = true;
                 let bases = self.bases(event, true);
-                let free = bases.into_iter().find(|&base| !self.would_close_a_circle(&choice, event, base));
+                let free = bases.into_iter().find(|&base| self.may_be_based(&choice, event, base));
                 choice.base[event.index()] = free.unwrap_or(self.whole.origin());
             }
         }
         choice
     }
 
-    /// True if the way on from a base leads to the event.
-    fn would_close_a_circle(&self, choice: &Choice, event: EventId, base: EventId) -> bool {
+    /// True if the way on from a base does not lead to the event.
+    fn may_be_based(&self, choice: &Choice, event: EventId, base: EventId) -> bool {
         let mut at = base;
         for _ in 0..choice.base.len() {
-            if at == event {
+            if at == self.whole.origin() || !self.options.rules.acyclic {
                 return true;
             }
-            if at == self.whole.origin() {
-                return false;
+            if at == event {
+                break;
             }
             at = self.whole.link_to(at).map_or(choice.base[at.index()], |link| link.from);
         }
-        true
+        false
     }
 
     /// What a promise could be measured from, nearest first: what it waits for, or also what it may merely come after.
@@ -301,7 +317,7 @@ impl<'a> Finder<'a> {
             bases.push(self.whole.origin());
             let mut tried = BTreeSet::from([choice.base[event.index()]]);
             for base in bases {
-                if tried.insert(base) && !self.would_close_a_circle(choice, event, base) {
+                if tried.insert(base) && self.may_be_based(choice, event, base) {
                     let mut other = choice.clone();
                     other.base[event.index()] = base;
                     others.push(other);

@@ -21,8 +21,6 @@ pub struct NotFound {
     pub lacks: Option<Duration>,
     /// What that is the sum of.
     pub members: Vec<Member>,
-    /// Links that would do if they were other than they are, each alone.
-    pub remedies: Vec<Remedy>,
 }
 
 /// One bound or delay in what is missing.
@@ -63,7 +61,7 @@ pub enum Change {
     Stamped,
 }
 
-pub(crate) fn shortage(finder: &Finder<'_>, failure: &Failure) -> Result<NotFound, TooLarge> {
+pub(crate) fn shortage(finder: &Finder<'_>, failure: &Failure) -> NotFound {
     let mut times: BTreeMap<Cause, i64> = BTreeMap::new();
     let mut total = 0_i128;
     for (cut, factor) in &failure.core {
@@ -74,13 +72,11 @@ pub(crate) fn shortage(finder: &Finder<'_>, failure: &Failure) -> Result<NotFoun
     }
     let is_known = failure.core.iter().any(|(_, factor)| *factor != 0);
     let lacks = i64::try_from(-total).unwrap_or(i64::MAX).max(1);
-    let remedies = remedies(finder, &times, lacks)?;
     times.retain(|_, times| *times != 0);
-    Ok(NotFound {
+    NotFound {
         lacks: is_known.then(|| Duration::from_micros(lacks)),
         members: times.into_iter().map(|(what, times)| Member { what, times }).collect(),
-        remedies,
-    })
+    }
 }
 
 /// What a cut rests on that is the author's, and how many times.
@@ -148,17 +144,16 @@ fn causes(team: &Team, whole: &Whole, view: &Numbered, agent: AgentId, part: Par
     }
 }
 
-/// Beyond this many events nothing is tried out.
-const MOST_EVENTS: usize = 200;
-
-fn remedies(finder: &Finder<'_>, times: &BTreeMap<Cause, i64>, lacks: i64) -> Result<Vec<Remedy>, TooLarge> {
-    let (team, options) = (finder.team, finder.options);
+/// The links that would do if they were other than they are, each alone. It takes dozens of searches.
+///
+/// # Errors
+/// [`TooLarge`] if the durations add up to more than 64-bit microseconds can hold.
+pub fn remedies(team: &Team, missing: &NotFound, options: &Options) -> Result<Vec<Remedy>, TooLarge> {
     let mut remedies = Vec::new();
-    if team.network().events().len() > MOST_EVENTS {
-        return Ok(remedies);
-    }
+    let lacks = missing.lacks.map_or(1, Duration::as_micros);
     for (number, link) in team.links().iter().enumerate() {
-        let uses = times.get(&Cause::Longest(number as u32)).copied().unwrap_or(0).max(1);
+        let cause = Cause::Longest(number as u32);
+        let uses = missing.members.iter().find(|member| member.what == cause).map_or(1, |it| it.times.max(1));
         let hint = link.delay.max.finite().map(|max| max.as_micros() - (lacks + uses - 1) / uses);
         if let Some(within) = slowest(team, number, hint, options)? {
             remedies.push(Remedy { link: number, change: Change::Within(Duration::from_micros(within)) });

@@ -81,7 +81,7 @@ impl Builder {
 
     pub fn network(&self) -> Network {
         let event = |(text, _): &(String, Option<String>)| Event {
-            names: vec![Name { text: text.clone(), internal: false }],
+            names: [Name { text: text.clone(), internal: false }].into(),
         };
         Network::new(
             "team".to_string(),

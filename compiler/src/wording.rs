@@ -2,8 +2,10 @@
 //! it becomes a diagnostic, with its code, its sentences and the changes that put it right.
 
 mod analyse;
+pub(crate) mod conflict;
 mod evaluate;
 mod expand;
+mod notes;
 mod parse;
 mod read;
 

@@ -2,13 +2,11 @@
 
 use kirk_network::{Bound, Duration};
 
-use crate::code::Code;
-use crate::diagnostic::Diagnostic;
+use super::problem::Problem;
 use crate::episode::{Episode, Interval, Kind};
-use crate::form::clip;
 
 /// Notes news that tells nothing, and upper bounds that are never reached.
-pub(super) fn notes_on_bounds(root: &Episode) -> Vec<Diagnostic> {
+pub(super) fn notes_on_bounds(root: &Episode) -> Vec<Problem<'_>> {
     let mut notes = Vec::new();
     longest(root, &mut notes);
     notes
@@ -16,7 +14,7 @@ pub(super) fn notes_on_bounds(root: &Episode) -> Vec<Diagnostic> {
 
 /// How long an episode can take by what is inside it alone: as long as its bounds allow, and at least as long as Nature
 /// may make it take, whatever the bounds say.
-fn longest(episode: &Episode, notes: &mut Vec<Diagnostic>) -> Bound {
+fn longest<'a>(episode: &'a Episode, notes: &mut Vec<Problem<'a>>) -> Bound {
     let allowed = allowed(episode, notes);
     match (allowed, forced(episode)) {
         (Bound::Finite(allowed), Bound::Finite(forced)) => Bound::Finite(allowed.max(forced)),
@@ -36,7 +34,7 @@ fn forced(episode: &Episode) -> Bound {
     }
 }
 
-fn allowed(episode: &Episode, notes: &mut Vec<Diagnostic>) -> Bound {
+fn allowed<'a>(episode: &'a Episode, notes: &mut Vec<Problem<'a>>) -> Bound {
     let inside: Vec<Bound> = episode.parts.iter().map(|part| longest(part, notes)).collect();
     let inside = inside.into_iter();
     let own = episode.duration.as_ref().map_or(Bound::Infinite, |duration| duration.upper);
@@ -63,7 +61,7 @@ fn allowed(episode: &Episode, notes: &mut Vec<Diagnostic>) -> Bound {
 }
 
 /// The news of an end is of use if it may say something: in the worst case it is as uncertain as the end itself.
-fn useless_news(episode: &Episode) -> Option<Diagnostic> {
+fn useless_news(episode: &Episode) -> Option<Problem<'_>> {
     let (duration, delay) = (episode.duration.as_ref()?, episode.delay.as_ref()?);
     let (longest, latest) = (duration.upper.finite()?, delay.upper.finite()?);
     let width = longest.checked_sub(duration.lower)?;
@@ -71,36 +69,16 @@ fn useless_news(episode: &Episode) -> Option<Diagnostic> {
     if spread == Duration::ZERO || width == Duration::ZERO || width > spread {
         return None;
     }
-    let name = clip(episode.name.split('#').next().unwrap_or(&episode.name));
-    Some(
-        Diagnostic::note(
-            Code::UselessNews,
-            delay.upper_span,
-            format!("the news of the end of `{name}` comes too irregularly to be of use"),
-        )
-        .primary(format!("the delay varies by {spread} s"))
-        .label(duration.upper_span, format!("the duration varies by only {width} s"))
-        .help(
-            "The plan cannot rely on this news and is made as if it never came. It would help if the delay varied by less \
-             than the duration.",
-        ),
-    )
+    Some(Problem::UselessNews {
+        activity: episode,
+        delay: (spread, delay.upper_span),
+        duration: (width, duration.upper_span),
+    })
 }
 
-fn never_binds(duration: &Interval, most: Duration) -> Option<Diagnostic> {
+fn never_binds(duration: &Interval, most: Duration) -> Option<Problem<'static>> {
     let limit = duration.upper.finite().filter(|limit| *limit > most)?;
-    Some(
-        Diagnostic::note(
-            Code::NeverBinds,
-            duration.upper_span,
-            format!("this upper bound of {limit} s is never reached"),
-        )
-        .primary(format!("what is inside takes at most {most} s"))
-        .help(
-            "Without slack, the durations inside add up to less than the bound, so it changes nothing. If time may pass \
-             between the activities, give them slack (`:slack t`).",
-        ),
-    )
+    Some(Problem::NeverBinds { bound: duration.upper_span, limit, most })
 }
 
 fn least(a: Bound, b: Bound) -> Bound {

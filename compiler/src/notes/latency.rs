@@ -5,22 +5,25 @@ use std::collections::HashMap;
 use kirk_network::punctual::{Group, Punctuality, punctual};
 use kirk_network::{Duration, EventId, Network, Share};
 
-use crate::code::Code;
-use crate::diagnostic::Diagnostic;
+use super::problem::{Moment, NeverLate, Problem};
 use crate::episode::{Episode, Kind};
-use crate::explain::{say, sum};
-use crate::form::clip;
-use crate::lower::{called, events_of};
+use crate::explain::stated;
+use crate::lower::events_of;
 use crate::origins::Origins;
-use crate::source::Span;
 
 /// Networks of more events than this are not looked at: it takes as long as the verdict, and nobody wrote them by hand.
 const MOST_EVENTS: usize = 5_000;
 /// How many notes one program gets.
 const MOST_NOTES: usize = 10;
+/// How many other activities one note names.
+const MOST_OTHERS: usize = 3;
 
 /// Notes the activities of a controllable program whose earliest start is their latest. The network is not merged.
-pub(super) fn notes_on_latency(network: &Network, origins: &Origins, root: &Episode) -> Vec<Diagnostic> {
+pub(super) fn notes_on_latency<'a>(
+    network: &Network,
+    origins: &'a Origins,
+    root: &'a Episode,
+) -> Vec<Problem<'a>> {
     if network.events().len() > MOST_EVENTS {
         return Vec::new();
     }
@@ -37,43 +40,28 @@ pub(super) fn notes_on_latency(network: &Network, origins: &Origins, root: &Epis
         .collect()
 }
 
-fn note(
+fn note<'a>(
     found: &Punctuality,
     group: &Group,
-    episodes: &Episodes<'_>,
+    episodes: &Episodes<'a>,
     network: &Network,
-    origins: &Origins,
-) -> Option<Diagnostic> {
+    origins: &'a Origins,
+) -> Option<Problem<'a>> {
     let mut late = group.others.iter().filter_map(|exact| {
         let episode = episodes.activity(&exact.events)?;
         let shares = found.because(group, exact, network).ok()??;
         Some((episode, exact, shares))
     });
-    let (episode, exact, shares) = late.next()?;
-    let name = clip(&episode.name);
-    let (when, moment) = episodes.moment(group, exact.after, network);
-    let message = format!("`{name}` can never start late: it has to start {when}");
-    let mut note = Diagnostic::note(Code::NeverLate, episode.span, message)
-        .primary("the first moment at which this can start is also the last");
-    let mut places: Vec<(Span, String)> = moment.into_iter().collect();
-    for share in shares.iter().filter(|share| share.amount != Duration::ZERO) {
-        places.extend(say(share, network, origins, &[], true).filter(|place| !places.contains(place)));
-    }
-    for (span, text) in places {
-        note = note.label(span, text);
-    }
-    for (other, ..) in late.take(3) {
-        note = note.label(other.span, format!("`{}` can never start late either", clip(&other.name)));
-    }
-    let written: Vec<Share> = shares.into_iter().filter(|share| share.amount != Duration::ZERO).collect();
-    let because = match written.is_empty() {
-        true => String::new(),
-        false => format!("No time is left between these bounds: {} = 0. ", sum(&written)),
-    };
-    Some(note.help(format!(
-        "{because}Every computer, radio and person takes a moment to react, and then this plan is broken: leave some \
-         time, by a longer upper bound or a shorter lower one."
-    )))
+    let (activity, exact, shares) = late.next()?;
+    let amounts: Vec<Share> = shares.into_iter().filter(|share| share.amount != Duration::ZERO).collect();
+    Some(Problem::NeverLate(NeverLate {
+        activity,
+        others: late.take(MOST_OTHERS).map(|(other, ..)| other).collect(),
+        after: exact.after,
+        moment: episodes.moment(group, network),
+        bounds: amounts.iter().filter_map(|share| stated(share, network, origins)).collect(),
+        amounts,
+    }))
 }
 
 /// Which episode starts or ends with an event.
@@ -98,46 +86,26 @@ impl<'a> Episodes<'a> {
         starting.copied().find(|episode| episode.kind == Kind::Primitive)
     }
 
-    /// The form a user gave no name to that starts or ends there: its end, if that is it.
-    fn form(&self, events: &[EventId]) -> Option<(&'a Episode, bool)> {
-        let ending = events.iter().find_map(|event| Some((*self.ends.get(event)?, true)));
-        ending.or_else(|| events.iter().find_map(|event| Some((*self.starts.get(event)?, false))))
+    /// What a form does there: it ends, if any does.
+    fn form(&self, events: &[EventId]) -> Moment<'a> {
+        let ending = events.iter().find_map(|event| Some(Moment::Ends(self.ends.get(event)?)));
+        let starting = || events.iter().find_map(|event| Some(Moment::Starts(self.starts.get(event)?)));
+        ending.or_else(starting).unwrap_or(Moment::Unknown)
     }
 
-    /// "exactly 5 s after `a` ends", and where that is, if its name does not say it.
-    fn moment(&self, group: &Group, after: Duration, network: &Network) -> (String, Option<(Span, String)>) {
-        let mut place = None;
-        let ending = group
-            .first
-            .iter()
-            .find_map(|event| self.ends.get(event).filter(|episode| episode.kind == Kind::Primitive));
-        let what = if group.first.contains(&network.origin()) {
-            "the mission starts".to_string()
-        } else {
-            match (ending, self.activity(&group.first)) {
-                (Some(before), _) if group.news && before.delay.is_some() => {
-                    format!("the news of the end of `{}` comes", clip(&before.name))
-                }
-                (Some(before), _) if before.contingent => format!("`{}` ends", clip(&before.name)),
-                (_, Some(start)) => format!("`{}` starts", clip(&start.name)),
-                (Some(before), None) => format!("`{}` ends", clip(&before.name)),
-                (None, None) => match self.form(&group.first) {
-                    Some((episode, end)) => {
-                        let happens = if end { "ends" } else { "starts" };
-                        let called = called(episode);
-                        if episode.internal {
-                            place = Some((episode.span, format!("{called} that {happens} then")));
-                        }
-                        format!("{called} {happens}")
-                    }
-                    None => "this can happen".to_string(),
-                },
-            }
-        };
-        let when = match after == Duration::ZERO {
-            true => format!("the moment {what}"),
-            false => format!("exactly {after} s after {what}"),
-        };
-        (when, place)
+    /// What happens first in a group.
+    fn moment(&self, group: &Group, network: &Network) -> Moment<'a> {
+        if group.first.contains(&network.origin()) {
+            return Moment::MissionStarts;
+        }
+        let is_activity = |episode: &&&Episode| episode.kind == Kind::Primitive;
+        let mut ending = group.first.iter().filter_map(|event| self.ends.get(event).filter(is_activity));
+        match (ending.next().copied(), self.activity(&group.first)) {
+            (Some(before), _) if group.news && before.delay.is_some() => Moment::NewsComes(before),
+            (Some(before), _) if before.contingent => Moment::Ends(before),
+            (_, Some(start)) => Moment::Starts(start),
+            (Some(before), None) => Moment::Ends(before),
+            (None, None) => self.form(&group.first),
+        }
     }
 }

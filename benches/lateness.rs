@@ -19,7 +19,7 @@ use std::time::{Duration, Instant};
 use kirk_executive::{Driver, Ended, Happening, Http, Mission, Options, begin};
 use kirk_network::{EventId, Time, json};
 use kirk_runtime::nature::Nature;
-use kirk_runtime::{How, Outcome, Plan, Scope, Temper, handovers};
+use kirk_runtime::{How, Outcome, Plan, Scope, Speed, Temper, handovers};
 use work::{Family, Repeaters};
 
 const ACTIVITIES: usize = 500;
@@ -71,7 +71,11 @@ fn early(events: u32, journal: bool) -> Ended {
     let handovers = handovers(plan.network(), None, Scope::All);
     let merged = plan.network().clone();
     let mission = Mission { program: "early".into(), network, plan, handovers };
-    let options = Options { driver: Some(Driver::Stdio(CONFIRM.into())), speed: SPEED, ..Options::default() };
+    let options = Options {
+        driver: Some(Driver::Stdio(CONFIRM.into())),
+        speed: Speed::try_from(SPEED).unwrap(),
+        ..Options::default()
+    };
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("journal");
     let ready =

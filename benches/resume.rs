@@ -14,7 +14,9 @@ use std::time::Instant;
 use kirk_network::{Duration, EventId, Time};
 use kirk_runtime::journal::{Clocks, Line, Record, Start, read, write};
 use kirk_runtime::nature::Nature;
-use kirk_runtime::{Executive, Input, Output, Patience, Plan, Settings, Setup, Temper, recover, replay};
+use kirk_runtime::{
+    Executive, Input, Output, Patience, Plan, Settings, Setup, Speed, Temper, recover, replay,
+};
 use serde_json::value::RawValue;
 use work::{Family, Repeaters};
 
@@ -54,7 +56,7 @@ fn journal(events: u32) -> Vec<String> {
     let setup = Setup { program, run, settings, handovers: Vec::new(), driver: false, patience };
     let shell = RawValue::from_string("null".to_string()).unwrap();
     let clocks = Clocks { boot: None, since_boot: 0, calendar: 0 };
-    let start = Record::Start(Box::new(Start::new(&network, &setup, 1.0, clocks, shell, "bench")));
+    let start = Record::Start(Box::new(Start::new(&network, &setup, Speed::REAL, clocks, shell, "bench")));
     let (mut lines, mut checksum) = (Vec::new(), 0);
     let mut record = |at: Time, record: Record| {
         let (line, next) = write(&Line::new(at, record), checksum);

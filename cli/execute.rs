@@ -6,7 +6,7 @@ use std::sync::mpsc::{Receiver, channel};
 use jiff::Timestamp;
 use kirk_compiler::episode::{Episode, Kind};
 use kirk_executive::{Driver, Ended, Http, Mission, Options, Ready, Resumption, Said, Screen, Zero, begin};
-use kirk_network::{Duration, Time};
+use kirk_network::Duration;
 use kirk_runtime::{
     Dispatcher, Execution, Outcome, Plan, Scope, handovers, leave_out_natures, merge_companions,
 };
@@ -67,7 +67,6 @@ pub(crate) fn execute(arguments: &Run, common: &Common, input: &Input, plan: Pla
 
 /// Goes on with a mission that was interrupted.
 pub(crate) fn resume(arguments: &Resume, common: &Common) -> io::Result<Status> {
-    let at = arguments.at.map(|seconds| Time::from_micros((seconds * 1e6) as i64));
     let note = |text: String| {
         if !common.quiet {
             remark(&text);
@@ -79,7 +78,7 @@ pub(crate) fn resume(arguments: &Resume, common: &Common) -> io::Result<Status> 
         return wrong(&message);
     }
     let (out, said) = channel();
-    match kirk_executive::resume(&arguments.journal, at, out, note) {
+    match kirk_executive::resume(&arguments.journal, arguments.at, out, note) {
         Ok(Resumption::Ready(ready)) => {
             // The mission is to go on, also where there is no such terminal as there was when it was begun.
             let screen = has_screen(wanted.unwrap_or(ready.options().screen)).unwrap_or(false);
@@ -187,7 +186,8 @@ fn zero(options: &Options) -> Option<String> {
             Timestamp::from_microsecond(calendar).ok().map(|at| format!("time zero of the mission is {at}"))
         }
         Zero::DriverConfirms { within } => Some(format!(
-            "the clock of the mission stands until the driver first confirms, for {within} s at most"
+            "the clock of the mission stands until the driver first confirms, for {} s at most",
+            within.as_secs_f64()
         )),
     }
 }

@@ -1,7 +1,6 @@
 //! `kirk replay`: repeats a mission from its journal, bit for bit.
 
 use std::io;
-use std::time::Duration as Real;
 
 use kirk_network::Time;
 use kirk_runtime::journal::read as read_journal;
@@ -33,8 +32,7 @@ pub(crate) fn replay(arguments: &Replay, common: &Common) -> io::Result<Status> 
     let mut shown_until = Time::ZERO;
     let replayed = repeat(&journal, |at, executive, output| {
         let Some(speed) = arguments.speed else { return };
-        let wait = (at.as_micros() - shown_until.as_micros()).max(0) as f64 / speed / journal.start.speed;
-        std::thread::sleep(Real::from_micros(wait as u64));
+        std::thread::sleep(speed.times(journal.start.speed).real(at.saturating_since(shown_until)));
         shown_until = shown_until.max(at);
         match output {
             Output::Fixed { event, .. } if !common.quiet => {

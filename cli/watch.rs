@@ -79,12 +79,11 @@ fn lines(happening: &Happening) -> Vec<String> {
                 format!("{time:>10}  {event}  {how}")
             })
             .collect(),
-        Happening::Failed { at, id, reason } => {
-            let event = id.split_once('/').map_or(id.as_str(), |(_, event)| event);
+        Happening::Failed { at, event, reason, .. } => {
             vec![format!("{:>10}  {}  not confirmed: {}", at, one_line(event), one_line(reason))]
         }
         Happening::Ignored { at, event, why } => {
-            vec![format!("{:>10}  {}  ignored: {}", at, one_line(event), one_line(why))]
+            vec![format!("{:>10}  {}  ignored: {}", at, one_line(event), one_line(&why.to_string()))]
         }
         Happening::Warning { at, text } | Happening::Note { at, text } => {
             vec![format!("{:>10}  {}", at, one_line(text))]

@@ -1,9 +1,12 @@
 //! The command lines of `kirk run`, `kirk resume` and `kirk replay`.
 
 use std::path::PathBuf;
+use std::time::Duration as Real;
 
 use clap::{Args, ValueEnum};
 use jiff::{SignedDuration, Timestamp};
+use kirk_network::{Duration, Time};
+use kirk_runtime::Speed;
 
 use super::{Selection, TextOrJson};
 
@@ -82,8 +85,8 @@ pub(crate) struct Live {
     #[arg(long, value_enum, value_name = "WHAT", conflicts_with = "simulate")]
     pub(crate) companion: Option<CompanionName>,
     /// How many seconds the driver may take for an answer.
-    #[arg(long, default_value = "10", value_name = "S", value_parser = positive, conflicts_with = "simulate")]
-    pub(crate) driver_timeout: f64,
+    #[arg(long, default_value = "10", value_name = "S", value_parser = real, conflicts_with = "simulate")]
+    pub(crate) driver_timeout: Real,
     /// A shell command that is run if the mission fails (KIRK_REASON, KIRK_EVENT, KIRK_TIME, KIRK_DETAIL, KIRK_PROGRAM).
     #[arg(long, value_name = "CMD", conflicts_with = "simulate")]
     pub(crate) on_failure: Option<String>,
@@ -97,14 +100,14 @@ pub(crate) struct Live {
     #[arg(long, value_name = "FILE", requires = "port")]
     pub(crate) token_file: Option<String>,
     /// An event may be handed over up to so many seconds before its time.
-    #[arg(long, default_value = "0", value_name = "S", value_parser = not_negative, conflicts_with = "simulate")]
-    pub(crate) tolerance: f64,
+    #[arg(long, default_value = "0", value_name = "S", value_parser = seconds, conflicts_with = "simulate")]
+    pub(crate) tolerance: Duration,
     /// Run the clock so many times faster: rehearsals, tests.
     #[arg(long, default_value = "1", value_name = "X", value_parser = speed, conflicts_with = "simulate")]
-    pub(crate) speed: f64,
+    pub(crate) speed: Speed,
     /// Let the clock of the mission stand until the driver first confirms, for so many seconds at most.
-    #[arg(long, value_name = "S", value_parser = positive, conflicts_with_all = ["simulate", "start_at"])]
-    pub(crate) wait_for_driver: Option<f64>,
+    #[arg(long, value_name = "S", value_parser = real, conflicts_with_all = ["simulate", "start_at"])]
+    pub(crate) wait_for_driver: Option<Real>,
     /// When the clock of the mission starts: a time of the calendar (RFC 3339, such as 2030-05-20T14:00:00Z), or from now on
     /// (+30s, +5m). Several executives may share it.
     #[arg(long, value_name = "TIME", value_parser = moment, conflicts_with = "simulate")]
@@ -212,11 +215,26 @@ fn moment(text: &str) -> Result<i64, String> {
     moment.map(Timestamp::as_microsecond).map_err(|error| format!("{error}; {expected}"))
 }
 
-fn speed(text: &str) -> Result<f64, String> {
+fn speed(text: &str) -> Result<Speed, String> {
     match positive(text)? {
-        number if number <= 1e6 => Ok(number),
+        number if number <= 1e6 => Speed::try_from(number),
         _ => Err("expected a number up to 1000000".to_string()),
     }
+}
+
+/// Seconds of mission time, to the nearest microsecond.
+fn seconds(text: &str) -> Result<Duration, String> {
+    not_negative(text).map(|seconds| Duration::from_micros((seconds * 1e6).round() as i64))
+}
+
+/// A time of the mission, in seconds.
+fn time(text: &str) -> Result<Time, String> {
+    seconds(text).map(Time::after_origin)
+}
+
+/// Seconds of real time.
+fn real(text: &str) -> Result<Real, String> {
+    positive(text).map(Real::from_secs_f64)
 }
 
 #[derive(Debug, Args)]
@@ -225,8 +243,8 @@ pub(crate) struct Resume {
     #[arg(value_name = "FILE")]
     pub(crate) journal: PathBuf,
     /// What time it is in the mission, in seconds after its start, if the clocks cannot tell.
-    #[arg(long, value_name = "S", value_parser = not_negative)]
-    pub(crate) at: Option<f64>,
+    #[arg(long, value_name = "S", value_parser = time)]
+    pub(crate) at: Option<Time>,
     /// Whether the mission is shown on a screen of the terminal, or by lines [default: as it was begun].
     #[arg(long, value_enum, value_name = "WHEN")]
     pub(crate) screen: Option<ScreenWhen>,
@@ -245,7 +263,7 @@ pub(crate) struct Replay {
     pub(crate) journal: PathBuf,
     /// Repeat it so many times faster than it was; at once if not given.
     #[arg(long, value_name = "X", value_parser = speed)]
-    pub(crate) speed: Option<f64>,
+    pub(crate) speed: Option<Speed>,
     /// Also print the events that no user wrote.
     #[arg(long)]
     pub(crate) internal: bool,

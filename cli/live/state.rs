@@ -96,9 +96,8 @@ impl State {
     pub(crate) fn note(&mut self, happening: &Happening) {
         let mut tone = Tone::Warning;
         let (at, text) = match happening {
-            Happening::Failed { at, id, reason } => {
-                let name = id.split_once('/').map_or(id.as_str(), |(_, name)| name);
-                (at, format!("the driver failed: {name}: {reason}"))
+            Happening::Failed { at, event, reason, .. } => {
+                (at, format!("the driver failed: {event}: {reason}"))
             }
             Happening::Warning { at, text } => (at, text.clone()),
             Happening::Note { at, text } => {

@@ -5,7 +5,7 @@ use std::time::Duration as Real;
 use kirk_executive::{AnswerNews, Happening, Ignored, Next, Possible, Snapshot, Waits};
 use kirk_network::Time;
 use kirk_network::time::Interval;
-use kirk_runtime::{How, Outcome, Pending, Row};
+use kirk_runtime::{How, Outcome, Pending, Row, Why};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use ratatui::style::Color;
@@ -90,13 +90,14 @@ fn talking() -> State {
     let mut state = seen(mission());
     state.note(&Happening::Failed {
         at: at(20),
+        event: "camera-on:start".to_string(),
         id: "run/camera-on:start".to_string(),
         reason: "exit status: 7".to_string(),
     });
     state.answered(
         AnswerNews {
             accepted: vec!["human-downlink-science:end".to_string()],
-            ignored: vec![Ignored { event: "tea:start".to_string(), why: "kirk dispatches it".to_string() }],
+            ignored: vec![Ignored { event: "tea:start".to_string(), why: Why::NotNatures }],
         },
         moment(22),
     );

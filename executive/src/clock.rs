@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, Ordering};
 use std::time::Duration as Real;
 
-use kirk_network::Time;
-use kirk_runtime::Clocks;
+use kirk_network::{Duration, Time};
+use kirk_runtime::{Clocks, Speed};
 
 /// Tells mission time, which begins at an anchor and may run faster than the world. Clones are the same clock.
 #[derive(Clone, Debug)]
@@ -15,31 +15,31 @@ pub struct Clock {
     anchor: Arc<AtomicI64>,
     /// Mission time at the anchor.
     at: Time,
-    speed: f64,
+    speed: Speed,
 }
 
 const STANDING: i64 = i64::MAX;
 
 impl Clock {
-    /// A clock that stands at `at` now and runs `speed` times as fast as the world.
-    pub fn starting(at: Time, speed: f64) -> Clock {
+    /// A clock that stands at `at` now and runs.
+    pub fn starting(at: Time, speed: Speed) -> Clock {
         Clock { anchor: Arc::new(since_boot().into()), at, speed }
     }
 
     /// A clock that will stand at zero in a while; before that it is time zero, too.
-    pub fn starting_in(wait: Real, speed: f64) -> Clock {
+    pub fn starting_in(wait: Real, speed: Speed) -> Clock {
         let anchor = since_boot().saturating_add(wait.as_micros() as i64);
         Clock { anchor: Arc::new(anchor.into()), at: Time::ZERO, speed }
     }
 
     /// A clock that stands at zero until it is started.
-    pub fn standing(speed: f64) -> Clock {
+    pub fn standing(speed: Speed) -> Clock {
         Clock { anchor: Arc::new(STANDING.into()), at: Time::ZERO, speed }
     }
 
-    /// Starts a clock that stands, as if that had been done so many real microseconds ago.
-    pub fn start(&self, ago: i64) {
-        self.anchor.store(since_boot().saturating_sub(ago), Ordering::Release);
+    /// Starts a clock that stands, as if that had been done so long ago, really.
+    pub fn start(&self, ago: Duration) {
+        self.anchor.store(since_boot().saturating_sub(ago.as_micros()), Ordering::Release);
     }
 
     /// True until it is started.
@@ -68,30 +68,27 @@ impl Clock {
 
     /// Mission time now.
     pub fn now(&self) -> Time {
-        Time::from_micros(self.at.as_micros().saturating_add(self.passed().max(0)))
+        self.at.saturating_add(self.passed().max(Duration::ZERO))
     }
 
     /// Mission time now for people: before the anchor it is negative, and counts down.
     pub fn countdown(&self) -> Time {
-        let passed = if self.is_standing() { 0 } else { self.passed() };
-        Time::from_micros(self.at.as_micros().saturating_add(passed))
+        if self.is_standing() { self.at } else { self.at.saturating_add(self.passed()) }
     }
 
     /// How much mission time has passed since the anchor.
-    fn passed(&self) -> i64 {
-        ((since_boot() - self.boot_at_anchor()) as f64 * self.speed) as i64
+    fn passed(&self) -> Duration {
+        self.mission(Duration::from_micros(since_boot() - self.boot_at_anchor()))
     }
 
     /// How long it really takes from one mission time to another; nothing if that is past.
     pub fn real(&self, from: Time, to: Time) -> Real {
-        let micros = to.as_micros().saturating_sub(from.as_micros()).max(0);
-        // Rounded up, so as not to wake a moment too early.
-        Real::from_nanos((micros as f64 * 1000.0 / self.speed).ceil() as u64)
+        self.speed.real(to.saturating_since(from))
     }
 
-    /// How much mission time passes in so many microseconds of real time.
-    pub fn mission_micros(&self, real_micros: i64) -> i64 {
-        (real_micros as f64 * self.speed) as i64
+    /// How much mission time passes in so much real time.
+    pub fn mission(&self, real: Duration) -> Duration {
+        self.speed.mission(real)
     }
 }
 
@@ -124,18 +121,18 @@ mod tests {
 
     #[test]
     fn a_clock_stands_until_it_is_started_and_all_who_have_it_see_that() {
-        let clock = Clock::standing(1000.0);
+        let clock = Clock::standing(Speed::try_from(1000.0).unwrap());
         let another = clock.clone();
         assert_eq!((clock.now(), clock.countdown(), clock.is_standing()), (Time::ZERO, Time::ZERO, true));
         assert!(clock.until_anchor() > Real::from_secs(1 << 30));
-        clock.start(2_000);
+        clock.start(Duration::from_micros(2_000));
         assert!(another.now() >= Time::from_micros(2_000_000) && !another.is_standing());
         assert_eq!(another.until_anchor(), Real::ZERO);
     }
 
     #[test]
     fn before_its_time_a_clock_says_zero_and_for_people_how_long_there_is() {
-        let clock = Clock::starting_in(Real::from_secs(3600), 2.0);
+        let clock = Clock::starting_in(Real::from_secs(3600), Speed::try_from(2.0).unwrap());
         assert_eq!(clock.now(), Time::ZERO);
         let left = clock.countdown().as_micros();
         assert!((-7_200_000_000..-7_100_000_000).contains(&left), "{left}");

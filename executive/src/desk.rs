@@ -9,7 +9,7 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use kirk_network::model::normal_name;
-use kirk_network::{EventId, Network, Time};
+use kirk_network::{Duration, EventId, Network, Time};
 use kirk_runtime::{Rebuilt, Why};
 use serde::Serialize;
 use tokio::sync::broadcast;
@@ -35,7 +35,7 @@ struct Shared {
     heard: Vec<AtomicBool>,
     version: AtomicU64,
     /// What was told of news of no use: each event and reason once.
-    ignored: Mutex<HashSet<(String, String)>>,
+    ignored: Mutex<HashSet<(String, Why)>>,
     happenings: broadcast::Sender<Arc<Happening>>,
 }
 
@@ -46,8 +46,8 @@ pub(crate) type Ticket = u64;
 pub(crate) enum Message {
     /// News of events, and who wants to know what became of it.
     News { arrived: Time, events: Vec<(String, EventId)>, answer: AnswerNews, reply: Reply<AnswerNews> },
-    /// The driver confirmed a dispatch, `ago` seconds after it was executed if it says so.
-    Executed { id: String, ago: Option<f64> },
+    /// The driver confirmed a dispatch, really so long after it was executed if it says so.
+    Executed { id: String, ago: Option<Duration> },
     /// The driver failed, or in case of doubt nobody knows.
     Failed { id: String, reason: String, doubt: bool },
     /// The driver has something to say to people.
@@ -82,7 +82,7 @@ pub struct Ignored {
     /// The event, as it was named.
     pub event: String,
     /// Why it is of no use.
-    pub why: String,
+    pub why: Why,
 }
 
 /// How an attempt of the driver failed.
@@ -147,7 +147,7 @@ impl Desk {
                     continue;
                 }
             };
-            answer.ignored.push(Ignored { event: name, why: why.to_string() });
+            answer.ignored.push(Ignored { event: name, why });
         }
         if events.is_empty() {
             return reply(answer);
@@ -199,7 +199,7 @@ impl Desk {
         let _ = self.inbox.send(Message::Stop { reason });
     }
 
-    pub(crate) fn executed(&self, id: String, ago: Option<f64>) {
+    pub(crate) fn executed(&self, id: String, ago: Option<Duration>) {
         let _ = self.inbox.send(Message::Executed { id, ago });
     }
 

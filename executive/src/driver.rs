@@ -14,6 +14,7 @@ use std::thread::JoinHandle;
 use std::time::Duration as Real;
 
 pub(crate) use command::shell;
+use kirk_network::Time;
 use kirk_runtime::{Execution, Handover, Sending, original_spelling};
 pub use output::Said;
 use serde::{Deserialize, Serialize};
@@ -22,6 +23,7 @@ use serde_json::{Value, json};
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 
 use crate::desk::Desk;
+use crate::seconds;
 use output::Ear;
 
 /// Which driver.
@@ -36,20 +38,14 @@ pub enum Driver {
     Url(String),
 }
 
-/// How a driver is treated.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Treatment {
-    /// How long an attempt may take, really.
-    pub(crate) limit: Real,
-}
-
 /// A driver at work.
 pub(crate) struct Running {
-    orders: UnboundedSender<Order>,
+    instructions: UnboundedSender<Instruction>,
     thread: JoinHandle<()>,
 }
 
-enum Order {
+/// What a driver is told.
+enum Instruction {
     Send(Sending),
     Over(Box<Execution>),
 }
@@ -67,52 +63,52 @@ impl Driver {
         }
     }
 
-    /// `said` hears what its commands print.
+    /// An attempt may really take so long. `said` hears what its commands print.
     pub(crate) fn start(
         &self,
-        treatment: Treatment,
+        limit: Real,
         greeting: Value,
         desk: Desk,
         said: Sender<Said>,
     ) -> io::Result<Running> {
-        let (orders, inbox) = unbounded_channel();
+        let (instructions, inbox) = unbounded_channel();
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
         let driver = self.clone();
         let thread = std::thread::Builder::new().name("driver".into()).spawn(move || {
             runtime.block_on(async {
                 let (ear, silence) = Ear::new(said);
                 match driver {
-                    Driver::Command(template) => command::run(template, treatment, inbox, desk, &ear).await,
+                    Driver::Command(template) => command::run(template, limit, inbox, desk, &ear).await,
                     Driver::Stdio(command) => {
-                        stdio::run(command, treatment, greeting, inbox, desk, &ear).await;
+                        stdio::run(command, limit, greeting, inbox, desk, &ear).await;
                     }
-                    Driver::Url(url) => url::run(url, treatment, inbox, desk).await,
+                    Driver::Url(url) => url::run(url, limit, inbox, desk).await,
                 }
                 silence.come(ear).await;
             });
             // Attempts nobody waits for any more do not keep the program from ending.
             runtime.shutdown_background();
         })?;
-        Ok(Running { orders, thread })
+        Ok(Running { instructions, thread })
     }
 }
 
 impl Running {
     pub(crate) fn send(&self, sending: Sending) {
         // The thread ends only when it is told to.
-        let _ = self.orders.send(Order::Send(sending));
+        let _ = self.instructions.send(Instruction::Send(sending));
     }
 
     /// Tells the driver that the mission is over, and waits until it has heard.
     pub(crate) fn end(self, execution: Execution) {
-        let _ = self.orders.send(Order::Over(Box::new(execution)));
+        let _ = self.instructions.send(Instruction::Over(Box::new(execution)));
         let _ = self.thread.join();
     }
 }
 
 /// One dispatch as drivers get it in JSON.
 fn dispatch(sending: &Sending) -> Value {
-    let seconds = |time: kirk_network::Time| time.as_micros() as f64 / 1e6;
+    let seconds = |time: Time| seconds::of(time.since_origin());
     json!({
         "id": sending.id,
         "event": sending.name,
@@ -125,9 +121,9 @@ fn dispatch(sending: &Sending) -> Value {
 }
 
 /// The next event to send; `None` when the mission is over.
-async fn next(inbox: &mut UnboundedReceiver<Order>) -> Option<Sending> {
+async fn next(inbox: &mut UnboundedReceiver<Instruction>) -> Option<Sending> {
     match inbox.recv().await {
-        Some(Order::Send(sending)) => Some(sending),
-        Some(Order::Over(_)) | None => None,
+        Some(Instruction::Send(sending)) => Some(sending),
+        Some(Instruction::Over(_)) | None => None,
     }
 }

@@ -1,7 +1,7 @@
 //! What happens in a mission, for those who watch: the stream of `GET /events`, the live timetable, the lines on a terminal.
 
 use kirk_network::Time;
-use kirk_runtime::{Execution, Row};
+use kirk_runtime::{Execution, Row, Why};
 use serde::Serialize;
 
 /// One thing that happened.
@@ -32,6 +32,9 @@ pub enum Happening {
     Failed {
         /// When, in seconds after the start.
         at: Time,
+        /// The event; in JSON the dispatch says which.
+        #[serde(skip)]
+        event: String,
         /// The dispatch.
         id: String,
         /// Why.
@@ -58,7 +61,7 @@ pub enum Happening {
         /// The event, as it was called.
         event: String,
         /// Why.
-        why: String,
+        why: Why,
     },
     /// The mission is over.
     Over {

@@ -5,25 +5,25 @@ use kirk_network::{Duration, Time};
 /// How long after they were due events were handed over, in mission time.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Lateness {
-    micros: Vec<i64>,
+    all: Vec<Duration>,
 }
 
 impl Lateness {
     pub(crate) fn add(&mut self, now: Time, due: Time) {
-        self.micros.push((now.as_micros() - due.as_micros()).max(0));
+        self.all.push(now.saturating_since(due).max(Duration::ZERO));
     }
 
     /// How many dispatches there were.
     pub fn count(&self) -> usize {
-        self.micros.len()
+        self.all.len()
     }
 
     /// The lateness that so many of 100 dispatches did not exceed; `None` if there were none.
     pub fn percentile(&self, percent: usize) -> Option<Duration> {
-        let mut sorted = self.micros.clone();
+        let mut sorted = self.all.clone();
         sorted.sort_unstable();
         let at = (sorted.len() * percent).div_ceil(100).saturating_sub(1);
-        sorted.get(at).map(|&micros| Duration::from_micros(micros))
+        sorted.get(at).copied()
     }
 }
 

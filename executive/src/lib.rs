@@ -2,7 +2,7 @@
 //!
 //! ```
 //! use kirk_executive::{Mission, Options, begin};
-//! use kirk_runtime::{Plan, Scope, handovers};
+//! use kirk_runtime::{Plan, Scope, Speed, handovers};
 //!
 //! let network = kirk_network::json::read(
 //!     r#"{"format": "kirk-network/1", "origin": "go", "events": ["go", "drive:start", "drive:end"],
@@ -14,7 +14,8 @@
 //! let handovers = handovers(plan.network(), None, Scope::Starts);
 //! let mission = Mission { program: "a drive".into(), network, plan, handovers };
 //! // A hundred times as fast as the world, without a driver, a journal, or a port for news.
-//! let options = Options { speed: 100.0, ..Options::default() };
+//! let speed = Speed::try_from(100.0).expect("a speed");
+//! let options = Options { speed, ..Options::default() };
 //! // Nobody listens to what commands of a driver print.
 //! let (said, _) = std::sync::mpsc::channel();
 //! let ready = begin(mission, options, None, said).expect("nothing to open");
@@ -52,6 +53,7 @@ mod lock;
 mod mission;
 mod resume;
 mod run;
+mod seconds;
 mod signals;
 mod snapshot;
 

@@ -7,15 +7,16 @@ use std::time::Duration as Real;
 
 use kirk_network::{Duration, Network, Time};
 use kirk_runtime::journal::{Line, Record, Start};
-use kirk_runtime::{Executive, Handover, Patience, Plan, Settings, Setup, Strategy};
+use kirk_runtime::{Executive, Handover, Patience, Plan, Settings, Setup, Speed, Strategy};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use serde_json::value::RawValue;
 
 use crate::clock::{Clock, clocks};
 use crate::desk::{Desk, Message};
-use crate::driver::{Driver, Running, Said, Treatment};
+use crate::driver::{Driver, Running, Said};
 use crate::file::JournalFile;
+use crate::seconds;
 
 /// What is executed.
 #[derive(Clone, Debug)]
@@ -37,13 +38,15 @@ pub struct Options {
     /// True if news that says more than the plan assumed is planned with.
     pub optimistic: bool,
     /// How many times faster than the world.
-    pub speed: f64,
-    /// How many seconds before they are due events may be handed over.
-    pub tolerance: f64,
+    pub speed: Speed,
+    /// How long before they are due events may be handed over.
+    #[serde(with = "seconds::mission")]
+    pub tolerance: Duration,
     /// Who executes events; nobody but the reader of the timetable if `None`.
     pub driver: Option<Driver>,
-    /// How many seconds an attempt of the driver may really take.
-    pub driver_timeout: f64,
+    /// How long an attempt of the driver may really take.
+    #[serde(with = "seconds::real")]
+    pub driver_timeout: Real,
     /// Where news is heard over HTTP.
     pub http: Option<Http>,
     /// A shell command that is run if the mission fails.
@@ -65,10 +68,11 @@ pub enum Zero {
     Soon,
     /// At this time of the calendar, in microseconds since 1970: several executives may share it.
     At(i64),
-    /// When the driver first confirms an event, which it has to do within so many real seconds.
+    /// When the driver first confirms an event, which it has to do in time.
     DriverConfirms {
-        /// The seconds.
-        within: f64,
+        /// How long that may really take.
+        #[serde(with = "seconds::real")]
+        within: Real,
     },
 }
 
@@ -90,10 +94,10 @@ impl Default for Options {
     fn default() -> Options {
         Options {
             optimistic: true,
-            speed: 1.0,
-            tolerance: 0.0,
+            speed: Speed::REAL,
+            tolerance: Duration::ZERO,
             driver: None,
-            driver_timeout: 10.0,
+            driver_timeout: Real::from_secs(10),
             http: None,
             on_failure: None,
             screen: Screen::Auto,
@@ -127,11 +131,12 @@ pub struct Ready {
 
 /// How late, really, an event may be and still count as executed when it was due, if no tolerance says more. A busy
 /// machine wakes up so late now and then, and no activity cares.
-const LATENESS: Real = Real::from_millis(100);
+const LATENESS: Duration = Duration::from_micros(100_000);
 /// How long before time zero everything is prepared, so that nothing is late at time zero.
 const PREPARATION: Real = Real::from_millis(50);
-/// How long to wait, really, before the driver is tried again, at first and at most.
-pub(crate) const PATIENCE: (Real, Real) = (Real::from_millis(100), Real::from_secs(2));
+/// How long to wait, really, before the driver is tried again.
+pub(crate) const PATIENCE: Patience =
+    Patience { first: Duration::from_micros(100_000), most: Duration::from_secs(2) };
 
 /// Prepares a mission: opens the journal, the port and the driver. Its time zero is a moment later, or as the options
 /// say. `said` hears what commands of the driver print.
@@ -219,8 +224,8 @@ pub(crate) fn open(options: &Options) -> Result<Option<Ear>, String> {
 }
 
 fn setup(mission: &Mission, options: &Options) -> Setup {
-    let scaled = |real: Real| Duration::from_micros((real.as_micros() as f64 * options.speed) as i64);
-    let lead = Duration::from_micros((options.tolerance * 1e6) as i64);
+    let scaled = |real: Duration| options.speed.mission(real);
+    let lead = options.tolerance;
     let settings = Settings {
         strategy: if options.optimistic { Strategy::Optimistic } else { Strategy::Buffer },
         lead,
@@ -233,7 +238,7 @@ fn setup(mission: &Mission, options: &Options) -> Setup {
         settings,
         handovers: mission.handovers.clone(),
         driver: options.driver.is_some(),
-        patience: Patience { first: scaled(PATIENCE.0), most: scaled(PATIENCE.1) },
+        patience: Patience { first: scaled(PATIENCE.first), most: scaled(PATIENCE.most) },
     }
 }
 
@@ -286,13 +291,41 @@ pub(crate) fn make(
     }
     let greeting =
         json!({ "protocol": "kirk-driver/1", "run": run, "speed": options.speed, "resumed": resumed });
-    let treatment = Treatment { limit: Real::from_secs_f64(options.driver_timeout) };
     let driver = match &options.driver {
         None => None,
         Some(driver) => {
-            let started = driver.start(treatment, greeting, desk.clone(), said);
+            let started = driver.start(options.driver_timeout, greeting, desk.clone(), said);
             Some(started.map_err(|error| format!("the driver cannot be started: {error}"))?)
         }
     };
     Ok(Ready { executive, options, desk, inbox, journal, driver, server })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// They stand in the journals of missions that go on.
+    #[test]
+    fn options_are_written_as_they_always_were() {
+        let rest = r#""http":null,"on_failure":null,"screen":"auto","zero":"soon""#;
+        let usual = format!(
+            r#"{{"optimistic":true,"speed":1.0,"tolerance":0.0,"driver":null,"driver_timeout":10.0,{rest}}}"#
+        );
+        assert_eq!(serde_json::to_string(&Options::default()).unwrap(), usual);
+        let rest =
+            r#""http":null,"on_failure":"echo","screen":"never","zero":{"driver-confirms":{"within":0.1}}"#;
+        let text = format!(
+            r#"{{"optimistic":false,"speed":2.5,"tolerance":0.29,"driver":{{"url":"http://robot/"}},"driver_timeout":1234.1,{rest}}}"#
+        );
+        let options: Options = serde_json::from_str(&text).unwrap();
+        assert_eq!(options.tolerance, Duration::from_micros(290_000));
+        assert_eq!(serde_json::to_string(&options).unwrap(), text);
+        for (right, wrong) in [("2.5", "0"), ("0.29", "-1"), ("1234.1", "-1"), ("0.1", "-1")] {
+            assert!(
+                serde_json::from_str::<Options>(&text.replace(right, wrong)).is_err(),
+                "{wrong} for {right}"
+            );
+        }
+    }
 }

@@ -4,8 +4,8 @@ use std::path::Path;
 use std::sync::mpsc::Sender;
 use std::time::Duration as Real;
 
+use kirk_network::Time;
 use kirk_network::merge::merge;
-use kirk_network::{Duration, Time};
 use kirk_runtime::journal::{Clocks, Journal, Line, Record, Trace};
 use kirk_runtime::{Execution, Input, Replay, recover};
 
@@ -122,8 +122,8 @@ fn moment(journal: &Journal, options: &Options, at: Option<Time>) -> Result<Mome
     }
     let clocks = clocks();
     let since = if clocks.rebooted_since(anchor) { Since::Reboot } else { Since::SameBoot };
-    let passed = clocks.since(anchor).map(|real| (real.as_micros() as f64 * options.speed) as i64);
-    let told = passed.and_then(|passed| anchored.checked_add(Duration::from_micros(passed)));
+    let passed = clocks.since(anchor).map(|real| options.speed.mission(real));
+    let told = passed.and_then(|passed| anchored.checked_add(passed));
     let now = at.or(told).ok_or(
         "the machine was booted again, and its calendar says it is earlier than when the mission was interrupted; say what \
          time it is in the mission, in seconds after its start, with `--at`",

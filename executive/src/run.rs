@@ -10,7 +10,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration as Real, Instant};
 
-use kirk_network::{Duration, EventId, Time};
+use kirk_network::{EventId, Time};
 use kirk_runtime::journal::{Line, Record, Trace};
 use kirk_runtime::{
     Answer, Execution, Executive, Handled, Input, Output, Reason, Rebuild, Rebuilt, Sending, Why,
@@ -66,7 +66,7 @@ impl Ready {
             synced: 0,
             outbox: VecDeque::new(),
             with_driver: BTreeMap::new(),
-            answers_within: Real::from_secs_f64(options.driver_timeout) + MARGIN,
+            answers_within: options.driver_timeout + MARGIN,
             ignored: HashSet::new(),
             warnings: 0,
             lateness: Lateness::default(),
@@ -226,9 +226,7 @@ impl Loop {
                 now = arrived;
             }
             Message::Executed { id, ago } => {
-                let micros =
-                    |ago: f64| self.clock.mission_micros((ago * 1e6) as i64).clamp(0, now.as_micros());
-                let ago = ago.map(|ago| Duration::from_micros(micros(ago)));
+                let ago = ago.map(|ago| self.clock.mission(ago).min(now.since_origin()));
                 self.with_driver.remove(&id);
                 // A driver may say what it likes; said again it is no news.
                 let (_, is_news) = self.happens(now, Input::Executed { id, ago });
@@ -238,11 +236,11 @@ impl Loop {
                 }
             }
             Message::Failed { id, reason, doubt } => {
-                self.with_driver.remove(&id);
+                let event = self.with_driver.remove(&id).unwrap_or_else(|| id.clone());
                 let failed = Input::Failed { id: id.clone(), reason: reason.clone(), doubt };
                 let (_, is_news) = self.happens(now, failed);
                 if is_news {
-                    self.desk.tell(Happening::Failed { at: now, id, reason });
+                    self.desk.tell(Happening::Failed { at: now, event, id, reason });
                     self.perform();
                 }
             }
@@ -312,12 +310,10 @@ impl Loop {
 
     /// Records that news was of no use, of every event and reason once.
     fn ignored(&mut self, arrived: Time, event: String, why: Why) -> Ignored {
-        let ignored = Ignored { why: why.to_string(), event };
-        if self.ignored.insert((ignored.event.to_lowercase(), why)) {
-            let Ignored { event, why } = ignored.clone();
-            self.trace(arrived, Trace::Ignored { event, why });
+        if self.ignored.insert((event.to_lowercase(), why.clone())) {
+            self.trace(arrived, Trace::Ignored { event: event.clone(), why: why.to_string() });
         }
-        ignored
+        Ignored { event, why }
     }
 
     /// Has what news calls for planned anew, elsewhere.

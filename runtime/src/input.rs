@@ -3,7 +3,7 @@
 use std::fmt;
 
 use kirk_network::{Duration, EventId, Network, Time};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 
 use crate::checkpoint::Checkpoint;
 use crate::rebuild::Rebuilt;
@@ -146,6 +146,13 @@ impl fmt::Display for Why {
             Why::TooLate => f.write_str("its window has closed"),
             Why::NoSuchPlan => f.write_str("there is nothing to plan anew here"),
         }
+    }
+}
+
+/// As the sentence.
+impl Serialize for Why {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
     }
 }
 

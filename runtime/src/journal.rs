@@ -25,6 +25,7 @@ use crate::input::Input;
 use crate::order::Patience;
 use crate::plan::{NoPlan, Plan};
 use crate::replay::names;
+use crate::speed::Speed;
 pub use text::{BadJournal, Journal, is_journal, read, write};
 
 /// The `format` of the journals written and read here.
@@ -122,7 +123,7 @@ pub struct Start {
     /// How long to wait before trying again, at first and at most.
     pub patience: (Duration, Duration),
     /// How many times faster than real time it is executed.
-    pub speed: f64,
+    pub speed: Speed,
     /// What somebody is to carry out: names and companions.
     pub handovers: Vec<(String, Option<String>)>,
     /// True if a driver is told of that and confirms it.
@@ -155,7 +156,7 @@ impl Start {
     pub fn new(
         network: &Network,
         setup: &Setup,
-        speed: f64,
+        speed: Speed,
         clocks: Clocks,
         shell: Box<RawValue>,
         version: &str,

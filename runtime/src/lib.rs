@@ -66,6 +66,7 @@ pub mod rebuild;
 mod record;
 pub mod replay;
 pub mod simulate;
+mod speed;
 pub mod verify;
 
 pub use activity::{Handover, Scope, handovers, leave_out_natures, merge_companions, original_spelling};
@@ -83,4 +84,5 @@ pub use query::{Ended, Heard, Situation, Unheard, Waits};
 pub use rebuild::{Rebuild, Rebuilt};
 pub use replay::{Replay, recover, replay};
 pub use simulate::{Explained, Simulation, explained, simulate};
+pub use speed::Speed;
 pub use verify::{Violation, lucky, verify};

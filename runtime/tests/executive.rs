@@ -22,7 +22,7 @@ use kirk_runtime::journal::{Clocks, Line, Record, Start, Trace, read, write};
 use kirk_runtime::nature::Nature;
 use kirk_runtime::{
     Answer, Executive, Handled, Input, Outcome, Output, Patience, Plan, Rebuild, Scope, Settings, Setup,
-    Strategy, Temper, Why, handovers, recover, replay, verify,
+    Speed, Strategy, Temper, Why, handovers, recover, replay, verify,
 };
 use oracle::order::precedes;
 use oracle::random::{self, Shape};
@@ -113,7 +113,7 @@ impl Life {
         };
         let clocks = Clocks { boot: None, since_boot: 0, calendar: 0 };
         let shell = RawValue::from_string("null".into()).unwrap();
-        let start = Start::new(network, &setup, 1.0, clocks, shell, "test");
+        let start = Start::new(network, &setup, Speed::REAL, clocks, shell, "test");
         let (journal, checksum) = write(&Line::new(Time::ZERO, Record::Start(Box::new(start))), 0);
         let precedes = Box::new(precedes(plan.network(), Some(plan.network().origin())));
         Some(Life {

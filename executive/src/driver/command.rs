@@ -1,6 +1,7 @@
 //! The original's way: a shell command for each event, whose exit status says whether the event was executed.
 
 use std::process::Stdio;
+use std::time::Duration as Real;
 
 use kirk_runtime::{Handover, Sending, original_spelling};
 use rustix::process::{Pid, Signal, kill_process_group};
@@ -8,7 +9,7 @@ use tokio::process::{Child, Command};
 use tokio::sync::mpsc::UnboundedReceiver;
 
 use super::output::Ear;
-use super::{Order, Treatment, next};
+use super::{Instruction, next};
 use crate::desk::{Desk, Failed};
 
 /// What may be in a name that is put between quotes which are not ours.
@@ -44,8 +45,8 @@ pub(super) fn check(template: &str, handovers: &[Handover]) -> Result<(), String
 
 pub(super) async fn run(
     template: String,
-    treatment: Treatment,
-    mut inbox: UnboundedReceiver<Order>,
+    limit: Real,
+    mut inbox: UnboundedReceiver<Instruction>,
     desk: Desk,
     ear: &Ear,
 ) {
@@ -54,7 +55,7 @@ pub(super) async fn run(
         while let Some(sending) = next(&mut inbox).await {
             let (template, desk, ear) = (template.clone(), desk.clone(), ear.clone());
             tokio::task::spawn_local(async move {
-                match attempt(&template, &sending, treatment, &ear).await {
+                match attempt(&template, &sending, limit, &ear).await {
                     Ok(()) => desk.executed(sending.id, None),
                     Err(failure) => desk.failed(sending.id, failure),
                 }
@@ -64,7 +65,7 @@ pub(super) async fn run(
     local.run_until(work).await;
 }
 
-async fn attempt(template: &str, sending: &Sending, treatment: Treatment, ear: &Ear) -> Result<(), Failed> {
+async fn attempt(template: &str, sending: &Sending, limit: Real, ear: &Ear) -> Result<(), Failed> {
     let event = original_spelling(&sending.name);
     let companion = sending.companion.as_deref().map_or("NIL".to_string(), original_spelling);
     let cannot = |error| Failed::surely(format!("the shell cannot be started: {error}"));
@@ -75,14 +76,14 @@ async fn attempt(template: &str, sending: &Sending, treatment: Treatment, ear: &
     let mut child = command.spawn().map_err(cannot)?;
     // It holds the pipe open as well.
     drop(command);
-    match tokio::time::timeout(treatment.limit, child.wait()).await {
+    match tokio::time::timeout(limit, child.wait()).await {
         Ok(Ok(status)) if status.success() => Ok(()),
         Ok(Ok(status)) => Err(Failed::surely(format!("the command ended with {status}"))),
         Ok(Err(error)) => Err(Failed::perhaps(format!("the command is lost: {error}"))),
         Err(_) => {
             kill(&child);
             let _ = child.wait().await;
-            let limit = treatment.limit.as_secs_f64();
+            let limit = limit.as_secs_f64();
             Err(Failed::perhaps(format!("the command took longer than {limit} s")))
         }
     }

@@ -16,8 +16,9 @@ use tokio::time::{Instant, sleep_until, timeout};
 
 use super::command::{kill, shell};
 use super::output::Ear;
-use super::{Order, Treatment, dispatch};
+use super::{Instruction, dispatch};
 use crate::desk::{Desk, Failed};
+use crate::seconds;
 
 /// What a child may say, one of them in each line.
 #[derive(Debug, Deserialize)]
@@ -71,9 +72,9 @@ const MOST_NONSENSE: u32 = 20;
 
 pub(super) async fn run(
     command: String,
-    treatment: Treatment,
+    limit: Real,
     greeting: Value,
-    mut inbox: UnboundedReceiver<Order>,
+    mut inbox: UnboundedReceiver<Instruction>,
     desk: Desk,
     ear: &Ear,
 ) {
@@ -101,14 +102,14 @@ pub(super) async fn run(
         let deadline =
             pending.values().min().copied().unwrap_or_else(|| Instant::now() + Real::from_secs(3600));
         tokio::select! {
-            order = inbox.recv() => match order {
-                Some(Order::Send(sending)) if conversation.is_none() => {
+            instruction = inbox.recv() => match instruction {
+                Some(Instruction::Send(sending)) if conversation.is_none() => {
                     desk.failed(sending.id, Failed::surely(format!("the driver is not running ({last_end})")));
                 }
-                Some(Order::Send(sending)) => {
+                Some(Instruction::Send(sending)) => {
                     let line = json!({ "dispatch": dispatch(&sending) });
                     if tell(&mut conversation, &line).await {
-                        pending.insert(sending.id, Instant::now() + treatment.limit);
+                        pending.insert(sending.id, Instant::now() + limit);
                     } else {
                         // Half a line may have been written: nothing more can be said to this child.
                         desk.failed(sending.id, Failed::perhaps("the driver does not take what it is told"));
@@ -117,7 +118,7 @@ pub(super) async fn run(
                         starts_at = Instant::now();
                     }
                 }
-                Some(Order::Over(execution)) => {
+                Some(Instruction::Over(execution)) => {
                     let line = json!({ "over": { "outcome": execution.outcome, "failure": execution.failure } });
                     tell(&mut conversation, &line).await;
                     ended(conversation).await;
@@ -149,7 +150,7 @@ pub(super) async fn run(
                 }
             },
             () = sleep_until(deadline), if !pending.is_empty() => {
-                let limit = treatment.limit.as_secs_f64();
+                let limit = limit.as_secs_f64();
                 desk.warn(format!("the driver has not answered within {limit} s; it is started again"));
                 give_up(&mut conversation, &mut pending, &desk, &format!("no answer within {limit} s")).await;
                 starts_at = Instant::now();
@@ -248,7 +249,7 @@ fn listen(
         Ok(Said::Executed(said)) => {
             let (id, ago) = match said {
                 Executed::Id(id) => (id, None),
-                Executed::Ago { id, ago } => (id, ago.filter(|ago| ago.is_finite() && *ago >= 0.0)),
+                Executed::Ago { id, ago } => (id, ago.and_then(seconds::read)),
             };
             pending.remove(&id);
             desk.executed(id, ago);

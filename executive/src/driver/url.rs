@@ -1,5 +1,7 @@
 //! An HTTP address to which each event is posted; any answer of the 200s confirms it.
 
+use std::time::Duration as Real;
+
 use http_body_util::{BodyExt, Full, Limited};
 use hyper::Request;
 use hyper::body::Bytes;
@@ -8,7 +10,7 @@ use kirk_runtime::Sending;
 use tokio::net::TcpStream;
 use tokio::sync::mpsc::UnboundedReceiver;
 
-use super::{Order, Treatment, dispatch, next};
+use super::{Instruction, dispatch, next};
 use crate::desk::{Desk, Failed};
 
 /// Where to post.
@@ -58,7 +60,7 @@ impl Address {
     }
 }
 
-pub(super) async fn run(url: String, treatment: Treatment, mut inbox: UnboundedReceiver<Order>, desk: Desk) {
+pub(super) async fn run(url: String, limit: Real, mut inbox: UnboundedReceiver<Instruction>, desk: Desk) {
     let address = match Address::parse(&url) {
         Ok(address) => address,
         Err(message) => return desk.warn(message),
@@ -68,12 +70,12 @@ pub(super) async fn run(url: String, treatment: Treatment, mut inbox: UnboundedR
         while let Some(sending) = next(&mut inbox).await {
             let (address, desk) = (address.clone(), desk.clone());
             tokio::task::spawn_local(async move {
-                let answer = tokio::time::timeout(treatment.limit, post(&address, &sending)).await;
+                let answer = tokio::time::timeout(limit, post(&address, &sending)).await;
                 match answer {
                     Ok(Ok(())) => desk.executed(sending.id, None),
                     Ok(Err(failure)) => desk.failed(sending.id, failure),
                     Err(_) => {
-                        let limit = treatment.limit.as_secs_f64();
+                        let limit = limit.as_secs_f64();
                         desk.failed(sending.id, Failed::perhaps(format!("no answer within {limit} s")));
                     }
                 }

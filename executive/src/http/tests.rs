@@ -62,7 +62,7 @@ impl Rig {
     }
 
     fn with(limits: Limits, plays: Loop, token: Option<&str>) -> Rig {
-        let (desk, messages) = Desk::new(&network(), Clock::starting(Time::ZERO, 1.0));
+        let (desk, messages) = Desk::new(&network(), Clock::starting(Time::ZERO, kirk_runtime::Speed::REAL));
         let seen = Arc::new(Mutex::new(Seen::default()));
         let thread = {
             let (desk, seen) = (desk.clone(), seen.clone());

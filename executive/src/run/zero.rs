@@ -6,9 +6,9 @@
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration as Real, Instant};
 
-use kirk_network::Time;
+use kirk_network::{Duration, Time};
 use kirk_runtime::journal::Trace;
-use kirk_runtime::{Input, Output, Reason, Sending, Why};
+use kirk_runtime::{Input, Output, Reason, Sending, Speed, Why};
 
 use super::{LONGEST_SLEEP, Loop};
 use crate::desk::{AnswerNews, Message, Reply};
@@ -47,17 +47,17 @@ impl Loop {
 
     /// Hands the first event over until the driver confirms it; then it is time zero. The executive knows nothing of the
     /// attempts that failed: in its world no time has passed. All of them have the id of the dispatch, which was written ahead.
-    fn ask_driver(&mut self, within: f64, inbox: &Receiver<Message>) {
+    fn ask_driver(&mut self, within: Real, inbox: &Receiver<Message>) {
         let Some(first) = self.first_sending() else {
             self.warn(
                 "nothing is handed over at time zero, so the clock does not wait for the driver".to_string(),
             );
-            return self.clock.start(0);
+            return self.clock.start(Duration::ZERO);
         };
         self.waits = Some(Waits::Driver(first.name.clone()));
         let ticket = self.ahead.get(&first.id).copied().unwrap_or_default();
         let begun = Instant::now();
-        let deadline = begun + Real::from_secs_f64(within);
+        let deadline = begun + within;
         let (mut attempts, mut asked, mut again, mut last) = (0, false, begun, String::new());
         // Whoever stops it is still told what became of the attempt that is under way.
         while !self.executive.is_over() && (self.stopped.is_none() || asked && !self.hurried) {
@@ -80,14 +80,19 @@ impl Loop {
             match inbox.recv_timeout((wake - now).min(LONGEST_SLEEP)) {
                 Ok(Message::Executed { id, ago }) if asked && id == first.id => return self.begin(id, ago),
                 Ok(Message::Failed { id, reason, .. }) if asked && id == first.id => {
-                    let wait = PATIENCE.0.saturating_mul(1 << (attempts - 1).min(10)).min(PATIENCE.1);
-                    (asked, again) = (false, Instant::now() + wait);
+                    let wait = PATIENCE.wait(attempts, Duration::ZERO);
+                    (asked, again) = (false, Instant::now() + Speed::REAL.real(wait));
                     if reason != last {
                         let text = format!("`{}` is not confirmed: {reason}", first.name);
                         self.trace(Time::ZERO, Trace::Warning { text });
                         self.write();
                         last.clone_from(&reason);
-                        self.desk.tell(Happening::Failed { at: Time::ZERO, id, reason });
+                        self.desk.tell(Happening::Failed {
+                            at: Time::ZERO,
+                            event: first.name.clone(),
+                            id,
+                            reason,
+                        });
                     }
                 }
                 Ok(message) => self.take_early(message),
@@ -105,9 +110,9 @@ impl Loop {
         std::iter::from_fn(|| ahead.poll_output()).find_map(sending)
     }
 
-    /// The driver has confirmed the first event, `ago` seconds after it was executed if it says so: that was time zero.
-    fn begin(&mut self, id: String, ago: Option<f64>) {
-        self.clock.start(ago.map_or(0, |ago| (ago * 1e6) as i64));
+    /// The driver has confirmed the first event, so long after it was executed if it says so: that was time zero.
+    fn begin(&mut self, id: String, ago: Option<Duration>) {
+        self.clock.start(ago.unwrap_or(Duration::ZERO));
         self.trace(Time::ZERO, Trace::Began { clocks: self.clock.anchor() });
         self.waits = None;
         self.begun_by = Some(id.clone());
@@ -115,7 +120,8 @@ impl Loop {
         self.take(Message::Executed { id, ago });
     }
 
-    fn give_up(&mut self, name: &str, within: f64, last: &str) {
+    fn give_up(&mut self, name: &str, within: Real, last: &str) {
+        let within = within.as_secs_f64();
         let detail = format!(
             "the driver did not confirm `{name}` within {within} s, so the mission has not begun: {last}"
         );

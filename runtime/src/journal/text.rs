@@ -179,6 +179,7 @@ mod tests {
     use crate::input::Input;
     use crate::journal::{Clocks, Trace};
     use crate::order::Patience;
+    use crate::speed::Speed;
 
     #[test]
     fn a_journal_of_another_format_is_refused_by_its_name() {
@@ -211,8 +212,14 @@ mod tests {
             patience: Patience { first: Duration::ZERO, most: Duration::ZERO },
         };
         let shell = RawValue::from_string("null".into()).unwrap();
-        let start =
-            Start::new(&network, &setup, 1.0, Clocks { boot: None, since_boot: 0, calendar: 0 }, shell, "0");
+        let start = Start::new(
+            &network,
+            &setup,
+            Speed::REAL,
+            Clocks { boot: None, since_boot: 0, calendar: 0 },
+            shell,
+            "0",
+        );
         let mut text = String::new();
         let mut before = 0;
         let first = Line::new(Time::ZERO, Record::Start(Box::new(start)));

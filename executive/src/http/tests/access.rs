@@ -20,7 +20,7 @@ fn other_machines_are_listened_to_only_with_a_token() {
     }
     let open = listen("0.0.0.0", 0, true).unwrap();
     // Nor does a server start there without one.
-    let (desk, _messages) = Desk::new(&network(), Clock::starting(Time::ZERO, 1.0));
+    let (desk, _messages) = Desk::new(&network(), Clock::starting(Time::ZERO, kirk_runtime::Speed::REAL));
     let refused = Server::start(open, ServerOptions { token: None }, desk).err().unwrap();
     assert!(refused.to_string().contains("demands a token"), "{refused}");
 }

@@ -41,7 +41,12 @@ fn one_of_each() -> [Happening; 5] {
             due: at(0),
             attempt: 1,
         },
-        Happening::Failed { at: at(1), id: "1".to_string(), reason: "two\nlines, \u{e4}".to_string() },
+        Happening::Failed {
+            at: at(1),
+            event: "scan:start".to_string(),
+            id: "1".to_string(),
+            reason: "two\nlines, \u{e4}".to_string(),
+        },
         warning("late"),
         Happening::Fixed { at: at(2_000_000), rows: vec![row] },
         Happening::Over { at: at(2_000_000), execution },

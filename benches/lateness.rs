@@ -93,7 +93,7 @@ fn early(events: u32, journal: bool) -> Ended {
                         let (event, time) = (merged.find(&row.event).unwrap(), row.time.unwrap());
                         let deeds = nature.begin(event, time).unwrap();
                         coming.extend(
-                            deeds.into_iter().filter_map(|deed| Some(Reverse((deed.news?, deed.event)))),
+                            deeds.into_iter().filter_map(|deed| Some(Reverse((deed.observed?, deed.event)))),
                         );
                     }
                     continue;
@@ -105,7 +105,7 @@ fn early(events: u32, journal: bool) -> Ended {
                 coming.peek().copied().filter(|Reverse((at, _))| *at <= desk.clock().now())
             {
                 coming.pop();
-                desk.news(vec![merged.id(event).to_string()], Box::new(|_| {}));
+                desk.observe(vec![merged.id(event).to_string()], Box::new(|_| {}));
             }
             std::thread::sleep(Duration::from_millis(1));
         }
@@ -166,7 +166,7 @@ fn execute(journal: bool, flood: bool) -> (Ended, u64) {
     std::thread::spawn(move || {
         std::thread::sleep(Duration::from_millis(10 * ACTIVITIES as u64 + 1000));
         let names = (0..ACTIVITIES).map(|n| format!("a{n}:end")).collect();
-        desk.news(names, Box::new(|_| {}));
+        desk.observe(names, Box::new(|_| {}));
     });
     let ended = ready.run(false);
     let took = started.elapsed();

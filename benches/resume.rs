@@ -81,7 +81,7 @@ fn journal(events: u32) -> Vec<String> {
             {
                 let at = executive.dispatcher().known(event).fixed.unwrap().time;
                 for deed in nature.begin(event, at).unwrap() {
-                    news.extend(deed.news.map(|time| Reverse((time, deed.event))));
+                    news.extend(deed.observed.map(|time| Reverse((time, deed.event))));
                 }
             }
         }
@@ -94,7 +94,7 @@ fn journal(events: u32) -> Vec<String> {
             Some(&Reverse((time, event))) if timeout.is_none_or(|timeout| time <= timeout) => {
                 news.pop();
                 now = now.max(time);
-                happens(&mut executive, time, Input::news(&merged, event));
+                happens(&mut executive, time, Input::observed(&merged, event));
             }
             _ => {
                 now = timeout.unwrap();

@@ -110,7 +110,7 @@ pub(crate) fn run(desk: &Desk, options: Options, said: &Receiver<Said>) -> io::R
                 Action::Observe(event) => {
                     let replies = replies.clone();
                     // The screen may be down when the answer comes.
-                    desk.news(vec![event], Box::new(move |answer| drop(replies.send(answer))));
+                    desk.observe(vec![event], Box::new(move |answer| drop(replies.send(answer))));
                 }
                 Action::Stop => desk.stop("at the keyboard".to_string()),
                 Action::Leave => return Ok(End::Left),

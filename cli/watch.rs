@@ -5,7 +5,7 @@ use std::io::BufRead;
 use std::sync::mpsc::Receiver;
 use std::thread::JoinHandle;
 
-use kirk_executive::{AnswerNews, Desk, Happening, Said, read_news};
+use kirk_executive::{Acknowledgement, Desk, Happening, Said, read_observations};
 
 use crate::foreign::one_line;
 use crate::live;
@@ -98,7 +98,7 @@ pub(crate) fn read_lines(desk: Desk) {
             let Ok(line) = line else { return };
             match names(String::from_utf8_lossy(&line).trim()) {
                 Ok(names) if names.is_empty() => {}
-                Ok(names) => desk.news(names, Box::new(said)),
+                Ok(names) => desk.observe(names, Box::new(said)),
                 Err(message) => remark(&message),
             }
         }
@@ -108,13 +108,13 @@ pub(crate) fn read_lines(desk: Desk) {
 fn names(line: &str) -> Result<Vec<String>, String> {
     let line = line.trim_start_matches('\u{feff}').trim();
     if line.starts_with('{') {
-        return read_news(line.as_bytes())
+        return read_observations(line.as_bytes())
             .map_err(|error| format!("`{line}`: {error}, or the name of an event"));
     }
     Ok(line.split_whitespace().map(str::to_string).collect())
 }
 
-fn said(answer: AnswerNews) {
+fn said(answer: Acknowledgement) {
     for ignored in answer.ignored {
         remark(&format!("            {}  ignored: {}", ignored.event, ignored.why));
     }

@@ -38,13 +38,13 @@ pub(crate) fn why_event(dispatcher: &Dispatcher, event: EventId, called: &str) -
             format!("{}, which was by {latest} s", after(event, distance))
         }
         Some(Cause::Order { event }) => format!("after {} (order)", name(event)),
-        Some(Cause::NoNews { event: of, since, distance }) if of == event && is_itself => {
+        Some(Cause::Unobserved { event: of, since, distance }) if of == event && is_itself => {
             format!("no news by {}", after(since, distance))
         }
-        Some(Cause::NoNews { event, since, distance }) => {
+        Some(Cause::Unobserved { event, since, distance }) => {
             format!("no news of {} by {}", label(network, event), after(since, distance))
         }
-        Some(Cause::News) => its_news(),
+        Some(Cause::Observed) => its_news(),
         Some(Cause::Held { since, distance }) => {
             format!("{}, held until {}", its_news(), after(since, distance))
         }

@@ -11,7 +11,7 @@ use std::time::{Duration as Real, Instant};
 use binary::{kirk, kirk_with_input, stderr, stdout};
 use kirk_network::{Duration, Network, Time};
 use kirk_runtime::journal::{Clocks, Line, Record, Start, Trace, write};
-use kirk_runtime::{Executive, Input, Patience, Plan, Settings, Setup, Strategy};
+use kirk_runtime::{Executive, Input, Patience, Plan, Settings, Setup, Speed, Strategy};
 use serde_json::{Value, json};
 
 const ROBOT: &str = "examples/rmpl/robot.rmpl";
@@ -114,7 +114,7 @@ fn journal(network: &Network, news: &[(i64, &str)], until: i64) -> String {
     };
     let clocks = Clocks { boot: None, since_boot: 0, calendar: 0 };
     let nothing = serde_json::value::RawValue::from_string("null".into()).unwrap();
-    let start = Start::new(network, &setup, 1.0, clocks, nothing, "0");
+    let start = Start::new(network, &setup, Speed::REAL, clocks, nothing, "0");
     let mut lines = vec![Line::new(Time::ZERO, Record::Start(Box::new(start)))];
     let mut executive = Executive::new(Plan::new(network).unwrap(), setup);
     let mut news = news.iter().map(|&(at, event)| (seconds(at), event)).peekable();
@@ -126,7 +126,7 @@ fn journal(network: &Network, news: &[(i64, &str)], until: i64) -> String {
     };
     while now <= seconds(until) {
         match news.next_if(|(at, _)| *at <= now) {
-            Some((_, event)) => take(&mut executive, now, Input::News { event: event.into() }),
+            Some((_, event)) => take(&mut executive, now, Input::Observed { event: event.into() }),
             None => take(&mut executive, now, Input::Timeout {}),
         }
         while let Some(rebuild) = executive.poll_rebuild(now) {

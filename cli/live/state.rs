@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use kirk_executive::{AnswerNews, Happening, Possible, Snapshot};
+use kirk_executive::{Acknowledgement, Happening, Possible, Snapshot};
 use kirk_network::Time;
 use kirk_runtime::Outcome;
 
@@ -111,7 +111,7 @@ impl State {
     }
 
     /// Notes what became of a key that was pressed.
-    pub(crate) fn answered(&mut self, answer: AnswerNews, now: Moment) {
+    pub(crate) fn answered(&mut self, answer: Acknowledgement, now: Moment) {
         for event in answer.accepted {
             self.say(now.mission, Tone::Answer, format!("heard: {event}"));
         }

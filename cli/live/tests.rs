@@ -2,7 +2,7 @@
 
 use std::time::Duration as Real;
 
-use kirk_executive::{AnswerNews, Happening, Ignored, Next, Possible, Snapshot, Waits};
+use kirk_executive::{Acknowledgement, Happening, Ignored, Next, Possible, Snapshot, Waits};
 use kirk_network::Time;
 use kirk_network::time::Interval;
 use kirk_runtime::{How, Outcome, Pending, Row, Why};
@@ -95,7 +95,7 @@ fn talking() -> State {
         reason: "exit status: 7".to_string(),
     });
     state.answered(
-        AnswerNews {
+        Acknowledgement {
             accepted: vec!["human-downlink-science:end".to_string()],
             ignored: vec![Ignored { event: "tea:start".to_string(), why: Why::NotNatures }],
         },

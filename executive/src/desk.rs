@@ -32,7 +32,7 @@ struct Shared {
     /// For each event: it is Nature's.
     contingent: Vec<bool>,
     /// For each event: its news was accepted.
-    heard: Vec<AtomicBool>,
+    observed: Vec<AtomicBool>,
     version: AtomicU64,
     /// What was told of news of no use: each event and reason once.
     ignored: Mutex<HashSet<(String, Why)>>,
@@ -45,7 +45,12 @@ pub(crate) type Ticket = u64;
 /// What reaches the loop.
 pub(crate) enum Message {
     /// News of events, and who wants to know what became of it.
-    News { arrived: Time, events: Vec<(String, EventId)>, answer: AnswerNews, reply: Reply<AnswerNews> },
+    Observed {
+        arrived: Time,
+        events: Vec<(String, EventId)>,
+        answer: Acknowledgement,
+        reply: Reply<Acknowledgement>,
+    },
     /// The driver confirmed a dispatch, really so long after it was executed if it says so.
     Executed { id: String, ago: Option<Duration> },
     /// The driver failed, or in case of doubt nobody knows.
@@ -69,7 +74,7 @@ pub type Reply<T> = Box<dyn FnOnce(T) + Send>;
 
 /// What became of news: the events by the names they were given.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct AnswerNews {
+pub struct Acknowledgement {
     /// Known now.
     pub accepted: Vec<String>,
     /// Of no use.
@@ -118,7 +123,7 @@ impl Desk {
         let shared = Shared {
             events: events.map(|(name, event)| (name.text.to_lowercase(), event)).collect(),
             contingent: network.event_ids().map(|event| network.link_of(event).is_some()).collect(),
-            heard: network.event_ids().map(|_| AtomicBool::new(false)).collect(),
+            observed: network.event_ids().map(|_| AtomicBool::new(false)).collect(),
             version: AtomicU64::new(0),
             ignored: Mutex::new(HashSet::new()),
             happenings: broadcast::channel(WAITING).0,
@@ -133,15 +138,17 @@ impl Desk {
 
     /// News arrived just now, of events under any of their names. `reply` is called with what became of it, once it is
     /// safe; at once if none of it is of use.
-    pub fn news(&self, names: Vec<String>, reply: Reply<AnswerNews>) {
+    pub fn observe(&self, names: Vec<String>, reply: Reply<Acknowledgement>) {
         let arrived = self.clock.now();
-        let mut answer = AnswerNews::default();
+        let mut answer = Acknowledgement::default();
         let mut events: Vec<(String, EventId)> = Vec::new();
         for name in names {
             let why = match self.shared.events.get(&normal_name(&name)) {
                 None => Why::UnknownEvent,
                 Some(event) if !self.shared.contingent[event.index()] => Why::NotNatures,
-                Some(event) if self.shared.heard[event.index()].load(Ordering::Acquire) => Why::HeardBefore,
+                Some(event) if self.shared.observed[event.index()].load(Ordering::Acquire) => {
+                    Why::ObservedBefore
+                }
                 Some(event) => {
                     events.push((name, *event));
                     continue;
@@ -153,18 +160,18 @@ impl Desk {
             return reply(answer);
         }
         // If the loop is gone nobody is there to answer; whoever waits notices that the reply was dropped.
-        let _ = self.inbox.send(Message::News { arrived, events, answer, reply });
+        let _ = self.inbox.send(Message::Observed { arrived, events, answer, reply });
     }
 
     /// The same for news from elsewhere: whoever watches the mission does not see the answer, so of what is of no use they are
     /// told, of each event and reason once.
-    pub(crate) fn report(&self, names: Vec<String>, reply: Reply<AnswerNews>) {
+    pub(crate) fn report(&self, names: Vec<String>, reply: Reply<Acknowledgement>) {
         let (desk, arrived) = (self.clone(), self.clock.now());
-        let tell = move |answer: AnswerNews| {
+        let tell = move |answer: Acknowledgement| {
             answer.ignored.iter().for_each(|ignored| desk.tell_ignored(arrived, ignored));
             reply(answer);
         };
-        self.news(names, Box::new(tell));
+        self.observe(names, Box::new(tell));
     }
 
     fn tell_ignored(&self, arrived: Time, Ignored { event, why }: &Ignored) {
@@ -224,8 +231,8 @@ impl Desk {
         self.shared.version.store(version, Ordering::Release);
     }
 
-    pub(crate) fn set_heard(&self, event: EventId) {
-        self.shared.heard[event.index()].store(true, Ordering::Release);
+    pub(crate) fn set_observed(&self, event: EventId) {
+        self.shared.observed[event.index()].store(true, Ordering::Release);
     }
 
     pub(crate) fn tell(&self, happening: Happening) {

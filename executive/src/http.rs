@@ -15,7 +15,7 @@ mod connections;
 mod events;
 mod explained;
 mod front;
-mod news;
+mod observations;
 mod routes;
 #[cfg(test)]
 mod tests;
@@ -43,7 +43,7 @@ pub(crate) use self::access::{listen, read_token};
 use self::connections::{Connection, Connections};
 use self::explained::Explained;
 use self::front::Front;
-pub use self::news::read as read_news;
+pub use self::observations::read as read_observations;
 use crate::desk::Desk;
 
 /// A server that runs.

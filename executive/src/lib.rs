@@ -58,10 +58,10 @@ mod signals;
 mod snapshot;
 
 pub use clock::{Clock, clocks};
-pub use desk::{AnswerNews, Desk, Ignored, Reply};
+pub use desk::{Acknowledgement, Desk, Ignored, Reply};
 pub use driver::{Driver, Said};
 pub use happening::Happening;
-pub use http::read_news;
+pub use http::read_observations;
 pub use lateness::Lateness;
 pub use mission::{Http, Mission, Options, Ready, Screen, Zero, begin};
 pub use resume::{Resumption, resume};

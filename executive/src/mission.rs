@@ -283,7 +283,7 @@ pub(crate) fn make(
     let Hall { desk, inbox, server } = hall;
     for event in executive.network().event_ids() {
         if executive.dispatcher().known(event).observed.is_some() {
-            desk.set_heard(event);
+            desk.set_observed(event);
         }
     }
     if let Some(journal) = &mut journal {

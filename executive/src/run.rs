@@ -17,7 +17,7 @@ use kirk_runtime::{
 };
 
 use crate::clock::Clock;
-use crate::desk::{AnswerNews, Desk, Ignored, Message, Reply, Ticket};
+use crate::desk::{Acknowledgement, Desk, Ignored, Message, Reply, Ticket};
 use crate::driver::Running;
 use crate::failure;
 use crate::file::JournalFile;
@@ -144,7 +144,7 @@ struct Loop {
     /// Why the journal could not be written, if it could not.
     lost: Option<String>,
     /// Who is answered when it is.
-    replies: VecDeque<(Ticket, Vec<EventId>, AnswerNews, Reply<AnswerNews>)>,
+    replies: VecDeque<(Ticket, Vec<EventId>, Acknowledgement, Reply<Acknowledgement>)>,
     /// What is waited for before the clock runs.
     waits: Option<Waits>,
     /// The dispatch that the driver has confirmed before it was time zero.
@@ -221,8 +221,8 @@ impl Loop {
     fn take(&mut self, message: Message) {
         let mut now = self.clock.now();
         match message {
-            Message::News { arrived, events, answer, reply } => {
-                self.news(arrived, events, answer, reply);
+            Message::Observed { arrived, events, answer, reply } => {
+                self.observed(arrived, events, answer, reply);
                 now = arrived;
             }
             Message::Executed { id, ago } => {
@@ -275,16 +275,16 @@ impl Loop {
         self.plan_anew(now);
     }
 
-    fn news(
+    fn observed(
         &mut self,
         arrived: Time,
         events: Vec<(String, EventId)>,
-        mut answer: AnswerNews,
-        reply: Reply<AnswerNews>,
+        mut answer: Acknowledgement,
+        reply: Reply<Acknowledgement>,
     ) {
         let mut heard = Vec::new();
         for (name, event) in events {
-            let input = Input::news(self.executive.network(), event);
+            let input = Input::observed(self.executive.network(), event);
             let (became, _) = self.happens(arrived, input);
             match became {
                 Answer::Accepted => {
@@ -293,7 +293,7 @@ impl Loop {
                 }
                 Answer::Ignored(why) => {
                     // What was heard a moment ago may not be on the disk either.
-                    heard.extend((why == Why::HeardBefore).then_some(event));
+                    heard.extend((why == Why::ObservedBefore).then_some(event));
                     answer.ignored.push(self.ignored(arrived, name, why));
                 }
             }
@@ -393,7 +393,7 @@ impl Loop {
         while self.replies.front().is_some_and(|(ticket, ..)| *ticket <= safe) {
             if let Some((_, heard, answer, reply)) = self.replies.pop_front() {
                 // From now on the desk answers by itself that it was heard: that is true of what is safe only.
-                heard.into_iter().for_each(|event| self.desk.set_heard(event));
+                heard.into_iter().for_each(|event| self.desk.set_observed(event));
                 reply(answer);
             }
         }

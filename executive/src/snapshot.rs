@@ -170,7 +170,7 @@ mod tests {
         let mut executive = executive(MISSION, false);
         executive.handle(second(3), Input::Timeout {});
         let end = executive.network().find("scan:end").unwrap();
-        let news = Input::news(executive.network(), end);
+        let news = Input::observed(executive.network(), end);
         assert!(executive.handle(second(16), news).is_accepted());
         if let Some(rebuild) = executive.poll_rebuild(second(16)) {
             executive.handle(second(16), Input::rebuilt(rebuild.run()));

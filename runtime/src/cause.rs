@@ -29,7 +29,7 @@ pub enum Cause {
         event: EventId,
     },
     /// For the news of another event, or of itself, which had not come by then.
-    NoNews {
+    Unobserved {
         /// The event not heard of.
         event: EventId,
         /// The event from which the time is measured.
@@ -38,7 +38,7 @@ pub enum Cause {
         distance: Duration,
     },
     /// For its own news.
-    News,
+    Observed,
     /// Its own news came early, and counts from then on.
     Held {
         /// The event from which the time is measured.

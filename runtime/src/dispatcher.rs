@@ -253,7 +253,7 @@ impl Dispatcher {
         let evidence = heard_now(&link, heard);
         if before.and(evidence).is_empty() || before.earliest > heard {
             // Who was told when it was to come, and that it has not, is told the same again.
-            let by_model = self.knowledge.news_by(&self.network, event).filter(|&by| by < arrived);
+            let by_model = self.knowledge.observed_by(&self.network, event).filter(|&by| by < arrived);
             return Reception::Impossible { earliest: Some(earliest), latest: by_model.or(latest) };
         }
         self.version += 1;
@@ -266,7 +266,7 @@ impl Dispatcher {
         match window {
             Some((window, _)) if window.contains(heard) => self.happen(place.node, heard, How::Observed),
             _ if self.settings.strategy == Strategy::Optimistic && self.says_more(event) => self.stale = true,
-            _ if place.heard_by != Some(event) => self.fix(event, heard, How::Observed, Cause::News),
+            _ if place.heard_by != Some(event) => self.fix(event, heard, How::Observed, Cause::Observed),
             _ => {}
         }
         Reception::Accepted
@@ -385,8 +385,8 @@ impl Dispatcher {
 
     /// When news of a contingent event comes at the latest, by the model; `None` if it may never, or what it follows has not
     /// begun.
-    pub fn news_by(&self, event: EventId) -> Option<Time> {
-        self.knowledge.news_by(&self.network, event)
+    pub fn observed_by(&self, event: EventId) -> Option<Time> {
+        self.knowledge.observed_by(&self.network, event)
     }
 
     /// The same for all events.
@@ -484,7 +484,7 @@ impl Dispatcher {
         // At the moment of its own news nothing is held back.
         let heard_then = self.known(event).observed == Some(time);
         let (how, cause) =
-            if how == How::Buffered && heard_then { (How::Observed, Cause::News) } else { (how, cause) };
+            if how == How::Buffered && heard_then { (How::Observed, Cause::Observed) } else { (how, cause) };
         if self.knowledge.fix(event, time, how) {
             self.version += 1;
             self.causes.0[event.index()] = Some(cause);

@@ -6,7 +6,7 @@
 //! that list.
 
 mod checkpoints;
-mod news;
+mod observations;
 mod orders;
 
 use std::collections::{BTreeMap, VecDeque};
@@ -228,8 +228,8 @@ impl Executive {
                 self.timeout(now);
                 Answer::Accepted
             }
-            Input::News { event } => match self.names.get(event.as_str()) {
-                Some(&event) => self.news(now, event),
+            Input::Observed { event } => match self.names.get(event.as_str()) {
+                Some(&event) => self.observed(now, event),
                 None => Answer::Ignored(Why::UnknownEvent),
             },
             Input::Sent { id } => self.sent(now, id),
@@ -434,7 +434,7 @@ impl Executive {
             let due = if self.dispatcher.is_carried_out(event) { told() } else { None };
             self.outputs.push_back(Output::Fixed { event, due });
             if let Some(Fixed { how: How::Imagined, .. }) = self.dispatcher.known(event).fixed {
-                self.awaited.extend(self.dispatcher.news_by(event).map(|by| (by, event)));
+                self.awaited.extend(self.dispatcher.observed_by(event).map(|by| (by, event)));
             }
         }
     }

@@ -14,8 +14,9 @@ use crate::rebuild::Rebuilt;
 pub enum Input {
     /// Something is due, or may be.
     Timeout {},
-    /// News arrived.
-    News {
+    /// News arrived: an event was observed.
+    #[serde(rename = "news")]
+    Observed {
         /// The event, under any of its names.
         event: String,
     },
@@ -70,8 +71,8 @@ pub enum Input {
 
 impl Input {
     /// News of an event.
-    pub fn news(network: &Network, event: EventId) -> Input {
-        Input::News { event: network.label(event).to_string() }
+    pub fn observed(network: &Network, event: EventId) -> Input {
+        Input::Observed { event: network.label(event).to_string() }
     }
 
     /// A plan that was made elsewhere.
@@ -113,7 +114,7 @@ pub enum Why {
     /// The event is ours.
     NotNatures,
     /// News of it came before.
-    HeardBefore,
+    ObservedBefore,
     /// What it begins with has not been executed.
     NotStarted {
         /// What that is.
@@ -136,7 +137,7 @@ impl fmt::Display for Why {
         match self {
             Why::UnknownEvent => f.write_str("there is no such event in this mission"),
             Why::NotNatures => f.write_str("it is not Nature's to decide: kirk dispatches it"),
-            Why::HeardBefore => f.write_str("it was heard before"),
+            Why::ObservedBefore => f.write_str("it was heard before"),
             Why::NotStarted { start } => {
                 write!(f, "it cannot have happened: `{start}` has not been executed")
             }

@@ -196,7 +196,7 @@ impl Knowledge {
 
     /// When news of a contingent event comes at the latest, by the model and whatever else was heard; `None` if it may never, or
     /// its tree has not begun.
-    pub(crate) fn news_by(&self, network: &Network, event: EventId) -> Option<Time> {
+    pub(crate) fn observed_by(&self, network: &Network, event: EventId) -> Option<Time> {
         let mut latest = link_to(network, event).delay.max.finite()?;
         let (mut at, root) = (event, self.root[event.index()]);
         while at != root {

@@ -37,7 +37,7 @@ pub struct Deed {
     /// When it truly happens.
     pub truth: Time,
     /// When its news arrives, if ever.
-    pub news: Option<Time>,
+    pub observed: Option<Time>,
 }
 
 /// Decides, for every tree of contingent links, when all its events happen once its root is executed.
@@ -173,7 +173,7 @@ impl<'a> Nature<'a> {
         self.truth[event.index()] = truth;
         let min = link.delay.min;
         let heard = |max| Interval::at(truth).later(min, max);
-        let news = match (self.observations[event.index()], link.delay.max) {
+        let observed = match (self.observations[event.index()], link.delay.max) {
             (Some(given), _) => Some(given),
             (None, Bound::Finite(max)) => Some(match self.temper {
                 Temper::Upper => heard(max).latest,
@@ -189,7 +189,7 @@ impl<'a> Nature<'a> {
                 }
             },
         };
-        Ok(Deed { event, truth, news })
+        Ok(Deed { event, truth, observed })
     }
 
     fn first_impossible(&self, event: EventId, root: EventId, root_time: Time) -> Impossible {

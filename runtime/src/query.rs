@@ -357,10 +357,10 @@ fn waits_for(ahead: &Dispatcher, event: EventId) -> Option<EventId> {
         Cause::After { event, .. }
         | Cause::Surely { event, .. }
         | Cause::Order { event }
-        | Cause::NoNews { event, .. } => Some(event),
+        | Cause::Unobserved { event, .. } => Some(event),
         Cause::Held { since, .. } => Some(since),
         Cause::Anew { news } => news,
-        Cause::Start | Cause::News | Cause::Late { .. } | Cause::Closed { .. } => None,
+        Cause::Start | Cause::Observed | Cause::Late { .. } | Cause::Closed { .. } => None,
     }
 }
 

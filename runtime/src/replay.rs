@@ -147,7 +147,7 @@ impl Repetition {
         }
         let handled = self.executive.handle(at, given);
         match (handled.answer, input, handled.record) {
-            (Answer::Ignored(Why::UnknownEvent), Input::News { event }, _) => {
+            (Answer::Ignored(Why::UnknownEvent), Input::Observed { event }, _) => {
                 Err(format!("there is no event `{event}`"))
             }
             (_, Input::Rebuilt { known, .. }, Some(Input::Rebuilt { known: ours, .. })) if ours == *known => {

@@ -116,7 +116,7 @@ impl Run<'_> {
                     self.truth[dispatch.event.index()] = Some(dispatch.time);
                     for deed in self.nature.begin(dispatch.event, dispatch.time)? {
                         self.truth[deed.event.index()] = Some(deed.truth);
-                        self.news.extend(deed.news.map(|time| Reverse((time, deed.event))));
+                        self.news.extend(deed.observed.map(|time| Reverse((time, deed.event))));
                     }
                 }
                 if self.next_news().is_none_or(|(time, _)| time > now) {

@@ -202,7 +202,7 @@ impl Life {
             return;
         }
         // What was due just before may have begun it, and it is broken by now; no matter for this test.
-        self.happens(now, Input::news(&self.network, event));
+        self.happens(now, Input::observed(&self.network, event));
     }
 
     /// Something happens, and is on record.
@@ -217,8 +217,8 @@ impl Life {
     fn take(&mut self, now: i64, arrived: i64, coming: Coming) -> Result<(), String> {
         match coming {
             Coming::News(event) => {
-                match self.happens(arrived, Input::news(&self.network, event)).answer {
-                    Answer::Accepted | Answer::Ignored(Why::HeardBefore) => {}
+                match self.happens(arrived, Input::observed(&self.network, event)).answer {
+                    Answer::Accepted | Answer::Ignored(Why::ObservedBefore) => {}
                     Answer::Ignored(why) if !self.executive.is_over() && self.world.lies == 0 => {
                         let name = self.network.id(event);
                         return Err(format!("news of {name} at {arrived} was ignored: {why}"));
@@ -226,7 +226,7 @@ impl Life {
                     Answer::Ignored(_) => {}
                 }
                 if self.random.u32(0..4) == 0 {
-                    let again = self.happens(arrived, Input::news(&self.network, event));
+                    let again = self.happens(arrived, Input::observed(&self.network, event));
                     assert!(!again.is_accepted(), "{again:?}");
                 }
             }
@@ -312,7 +312,7 @@ impl Life {
         self.truth[event.index()] = Some(time);
         for deed in nature.begin(event, Time::from_micros(time)).map_err(|error| format!("{error:?}"))? {
             self.truth[deed.event.index()] = Some(deed.truth.as_micros());
-            if let Some(news) = deed.news {
+            if let Some(news) = deed.observed {
                 let lie = self.random.u32(0..100) < self.world.lies;
                 let wrong = if lie { self.random.i64(-3_000_000..30_000_000) } else { 0 };
                 self.coming.push(Reverse(((news.as_micros() + wrong).max(time), Coming::News(deed.event))));

@@ -70,13 +70,13 @@ impl Record<'_> {
             Cause::Order { event: other } => {
                 vec![(self.is_at(time, other, Duration::ZERO), "what it waits for was at another time")]
             }
-            Cause::NoNews { event: of, since, distance } => vec![
+            Cause::Unobserved { event: of, since, distance } => vec![
                 (self.is_at(time, since, distance), "the distance is another"),
                 (self.heard(of).is_none_or(|heard| heard >= time), "it was heard before"),
                 (ours || (of == event && row.how == How::Imagined), "it was not imagined"),
                 (self.network.link_of(of).is_some(), "nobody waits for news of it"),
             ],
-            Cause::News => vec![
+            Cause::Observed => vec![
                 (row.how == How::Observed, "it was not observed"),
                 (self.heard(event) == Some(time), "the news was at another time"),
             ],
@@ -113,8 +113,8 @@ fn kind(cause: Cause) -> &'static str {
         Cause::After { .. } => "after",
         Cause::Surely { .. } => "surely",
         Cause::Order { .. } => "order",
-        Cause::NoNews { .. } => "no news",
-        Cause::News => "news",
+        Cause::Unobserved { .. } => "no news",
+        Cause::Observed => "news",
         Cause::Held { .. } => "held",
         Cause::Anew { .. } => "anew",
         Cause::Late { .. } => "late",

@@ -46,7 +46,7 @@ fn failed(id: &str, reason: &str, doubt: bool) -> Input {
 
 /// News arrives. Returns whether it is of use.
 fn hear(executive: &mut Executive, arrived: Time, event: EventId) -> bool {
-    let news = Input::news(executive.network(), event);
+    let news = Input::observed(executive.network(), event);
     executive.handle(arrived, news).is_accepted()
 }
 

@@ -8,7 +8,7 @@ use tokio::sync::{Mutex, Semaphore, oneshot};
 use tokio::time::{Instant, timeout};
 
 use super::Limits;
-use crate::desk::{AnswerNews, Desk, Reply};
+use crate::desk::{Acknowledgement, Desk, Reply};
 
 pub(super) struct Front {
     pub(super) desk: Desk,
@@ -42,7 +42,7 @@ impl Front {
     }
 
     /// What became of news.
-    pub(super) async fn news(&self, names: Vec<String>) -> Result<AnswerNews, Silence> {
+    pub(super) async fn observe(&self, names: Vec<String>) -> Result<Acknowledgement, Silence> {
         self.in_time(self.ask(|reply| self.desk.report(names, reply))).await
     }
 

@@ -14,14 +14,14 @@ use tokio::time::timeout;
 use super::connections::Connection;
 use super::events::Stream;
 use super::front::Silence;
-use super::{BODY, House, news};
+use super::{BODY, House, observations};
 
 type Content = Either<Full<Bytes>, Stream>;
 
 /// What there is.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Route {
-    News,
+    Observations,
     State,
     Events,
     Health,
@@ -73,11 +73,11 @@ async fn respond(
         return Err(refuse(StatusCode::METHOD_NOT_ALLOWED, error).with(ALLOW, route.methods()));
     }
     match route {
-        Route::News => {
+        Route::Observations => {
             let body = whole(body, &house).await?;
             let _busy = connection.busy();
-            let names = news::read(&body).map_err(|error| refuse(StatusCode::BAD_REQUEST, error))?;
-            let answer = house.front.news(names).await?;
+            let names = observations::read(&body).map_err(|error| refuse(StatusCode::BAD_REQUEST, error))?;
+            let answer = house.front.observe(names).await?;
             Ok(json(json!(answer).to_string() + "\n"))
         }
         Route::State => {
@@ -98,7 +98,7 @@ async fn respond(
 impl Route {
     fn of(path: &str) -> Option<Route> {
         match path {
-            "/" => Some(Route::News),
+            "/" => Some(Route::Observations),
             "/state" => Some(Route::State),
             "/events" => Some(Route::Events),
             "/healthz" => Some(Route::Health),
@@ -109,7 +109,7 @@ impl Route {
     /// As in the header `Allow`.
     fn methods(self) -> &'static str {
         match self {
-            Route::News => "POST",
+            Route::Observations => "POST",
             Route::State | Route::Events | Route::Health => "GET, HEAD",
         }
     }

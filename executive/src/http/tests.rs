@@ -15,7 +15,7 @@ use kirk_network::{EventId, Network, Time, json};
 
 use super::{LIMITS, Limits, Server, ServerOptions};
 use crate::clock::Clock;
-use crate::desk::{AnswerNews, Desk, Message, Reply};
+use crate::desk::{Acknowledgement, Desk, Message, Reply};
 
 /// Two events are Nature's, `downlink:end` and `scan:end`.
 fn network() -> Network {
@@ -53,7 +53,7 @@ struct Rig {
 struct Seen {
     news: Vec<Vec<String>>,
     states: usize,
-    kept: Vec<(Reply<AnswerNews>, AnswerNews)>,
+    kept: Vec<(Reply<Acknowledgement>, Acknowledgement)>,
 }
 
 impl Rig {
@@ -117,7 +117,7 @@ fn play(plays: Loop, messages: &Receiver<Message>, desk: &Desk, seen: &Mutex<See
         let mut seen = seen.lock().unwrap();
         match (message, plays) {
             (Message::Stop { .. }, _) => return,
-            (Message::News { events, mut answer, reply, .. }, _) => {
+            (Message::Observed { events, mut answer, reply, .. }, _) => {
                 let (names, ids): (Vec<String>, Vec<EventId>) = events.into_iter().unzip();
                 answer.accepted.extend(names.iter().cloned());
                 seen.news.push(names);
@@ -125,7 +125,7 @@ fn play(plays: Loop, messages: &Receiver<Message>, desk: &Desk, seen: &Mutex<See
                     seen.kept.push((reply, answer));
                     continue;
                 }
-                ids.into_iter().for_each(|event| desk.set_heard(event));
+                ids.into_iter().for_each(|event| desk.set_observed(event));
                 desk.set_version(desk.version() + 1);
                 reply(answer);
             }

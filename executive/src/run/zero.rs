@@ -11,7 +11,7 @@ use kirk_runtime::journal::Trace;
 use kirk_runtime::{Input, Output, Reason, Sending, Speed, Why};
 
 use super::{LONGEST_SLEEP, Loop};
-use crate::desk::{AnswerNews, Message, Reply};
+use crate::desk::{Acknowledgement, Message, Reply};
 use crate::happening::Happening;
 use crate::mission::{PATIENCE, Zero};
 use crate::snapshot::Waits;
@@ -130,7 +130,7 @@ impl Loop {
 
     fn take_early(&mut self, message: Message) {
         match message {
-            Message::News { events, answer, reply, .. } => {
+            Message::Observed { events, answer, reply, .. } => {
                 self.refuse(events.into_iter().map(|(name, _)| name), answer, reply);
             }
             // Of an attempt that is over.
@@ -142,8 +142,8 @@ impl Loop {
     fn refuse(
         &mut self,
         names: impl Iterator<Item = String>,
-        mut answer: AnswerNews,
-        reply: Reply<AnswerNews>,
+        mut answer: Acknowledgement,
+        reply: Reply<Acknowledgement>,
     ) {
         for event in names {
             answer.ignored.push(self.ignored(Time::ZERO, event, Why::NotBegun));

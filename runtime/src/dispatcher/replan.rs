@@ -116,7 +116,7 @@ impl Dispatcher {
                 let (time, how, cause) = match known.observed {
                     // Lateness of ours is not held against the news.
                     Some(heard) if self.recorded(heard, planned, planned) == heard => {
-                        (heard, How::Observed, Cause::News)
+                        (heard, How::Observed, Cause::Observed)
                     }
                     Some(_) => (planned, How::Buffered, anew),
                     None => (planned, How::Imagined, anew),
@@ -131,7 +131,7 @@ impl Dispatcher {
         for event in self.network.event_ids() {
             let known = *self.known(event);
             if let (Some(heard), None, true) = (known.observed, known.fixed, self.is_hidden(event)) {
-                self.fix(event, heard, How::Observed, Cause::News);
+                self.fix(event, heard, How::Observed, Cause::Observed);
             }
         }
     }

@@ -41,7 +41,7 @@ impl Dispatcher {
             (Hold::Wait { link, distance }, _) => {
                 let event = self.acted_on(self.reduction.stnu.links[link as usize].contingent);
                 let (since, distance) = self.since(link, event, due, distance);
-                Cause::NoNews { event, since, distance }
+                Cause::Unobserved { event, since, distance }
             }
         }
     }
@@ -49,13 +49,13 @@ impl Dispatcher {
     /// What decided when a contingent node of the plan happens, by the news of an event or without.
     pub(super) fn cause_of_acting(&self, node: u32, event: EventId, time: Time, how: How) -> Cause {
         let Some(link) = self.agenda.ending(node).filter(|_| how != How::Observed) else {
-            return Cause::News;
+            return Cause::Observed;
         };
         let start =
             self.agenda.executed(self.reduction.stnu.links[link as usize].activation).unwrap_or(Time::ZERO);
         let (since, distance) = self.since(link, event, time, time.saturating_since(start));
         match how {
-            How::Imagined => Cause::NoNews { event, since, distance },
+            How::Imagined => Cause::Unobserved { event, since, distance },
             _ => Cause::Held { since, distance },
         }
     }
@@ -139,7 +139,7 @@ impl Dispatcher {
             }
             Cause::Start => Some(Cause::Start),
             before @ (Cause::Order { .. }
-            | Cause::NoNews { .. }
+            | Cause::Unobserved { .. }
             | Cause::Surely { .. }
             | Cause::Anew { .. })
                 if distance == Duration::ZERO =>

@@ -9,9 +9,9 @@ use crate::record::{and_goes_on, broken_model};
 
 impl Executive {
     /// Takes news that arrived at a time, usually now.
-    pub(super) fn news(&mut self, arrived: Time, event: EventId) -> Answer {
+    pub(super) fn observed(&mut self, arrived: Time, event: EventId) -> Answer {
         if self.dispatcher.known(event).observed.is_some() || self.held.iter().any(|held| held.1 == event) {
-            return Answer::Ignored(Why::HeardBefore);
+            return Answer::Ignored(Why::ObservedBefore);
         }
         if self.network().link_of(event).is_none() {
             return Answer::Ignored(Why::NotNatures);
@@ -50,7 +50,7 @@ impl Executive {
                 self.tell_rounding(arrived, event);
                 Answer::Accepted
             }
-            Reception::Repeated => Answer::Ignored(Why::HeardBefore),
+            Reception::Repeated => Answer::Ignored(Why::ObservedBefore),
             Reception::NotContingent => Answer::Ignored(Why::NotNatures),
             Reception::Impossible { earliest: None, .. } => {
                 let start = self.network().label(self.dispatcher.root(event)).to_string();
@@ -98,7 +98,7 @@ impl Executive {
         let network = self.network();
         let unheard = network.contingents().iter().map(|link| link.to);
         let unheard = unheard.filter(|&event| self.dispatcher.known(event).observed.is_none());
-        let late = unheard.filter_map(|event| self.dispatcher.news_by(event)).filter(|&by| by < now);
+        let late = unheard.filter_map(|event| self.dispatcher.observed_by(event)).filter(|&by| by < now);
         late.filter_map(|by| by.checked_add(self.slack)).filter(|&until| until >= now).max()
     }
 

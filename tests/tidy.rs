@@ -98,6 +98,23 @@ fn the_map_names_every_room() {
     assert!(missing.is_empty(), "docs/ARCHITECTURE.md does not say what these are: {missing:?}");
 }
 
+#[test]
+fn the_phases_of_the_compiler_report_what_they_know_and_no_sentences() {
+    let mut files = Vec::new();
+    for phase in ["read", "parse", "analyse", "expand", "evaluate"] {
+        let folder = Path::new("compiler/src").join(phase);
+        files.push(folder.with_extension("rs"));
+        if folder.is_dir() {
+            rust_files(&folder, &mut files);
+        }
+    }
+    assert!(files.len() > 40, "only {} files", files.len());
+    for file in files {
+        let text = fs::read_to_string(&file).unwrap();
+        assert!(!text.contains("Diagnostic"), "{} may want to leave that to wording/", file.display());
+    }
+}
+
 fn rust_files(folder: &Path, files: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();

@@ -237,7 +237,7 @@ impl Executive {
             Input::Failed { id, reason, doubt } => self.failed(now, id, reason, *doubt),
             Input::Rebuilt { from, known, made } => {
                 let made = made.take().map(|made| *made);
-                let rebuilt = made.or_else(|| self.poll_rebuild(*from).map(Rebuild::run));
+                let rebuilt = made.or_else(|| self.rebuild_from(*from).map(Rebuild::run));
                 let answer = self.rebuilt(now, rebuilt, known);
                 if answer != Answer::Accepted {
                     record = Input::Timeout {};
@@ -273,6 +273,11 @@ impl Executive {
     /// What is to be planned anew because of news, if anything is.
     pub fn poll_rebuild(&mut self, now: Time) -> Option<Rebuild> {
         if self.over { None } else { self.dispatcher.poll_rebuild(now) }
+    }
+
+    /// What was to be planned anew at a time, as a journal says: the clock may have gone on before the plan was there.
+    pub(crate) fn rebuild_from(&mut self, from: Time) -> Option<Rebuild> {
+        if self.over { None } else { self.dispatcher.rebuild_from(from) }
     }
 
     /// Goes on with a new plan, if it is of use, and puts down what was known.

@@ -135,7 +135,7 @@ impl Repetition {
             // What was known then is found again; of a plan that was not there it is enough to know that.
             Input::Rebuilt { from, known, .. } => {
                 let is_none = known.is_none() && plans == Plans::AsRecorded;
-                let rebuild = is_none.then(|| self.executive.poll_rebuild(*from)).flatten();
+                let rebuild = is_none.then(|| self.executive.rebuild_from(*from)).flatten();
                 let made = rebuild.map(|rebuild| Box::new(rebuild.without_plan()));
                 Input::Rebuilt { from: *from, known: None, made }
             }

@@ -3,9 +3,12 @@
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
 
 use kirk_network::{Duration, EventId, Time, json};
+use kirk_runtime::journal::{Clocks, Line, Record, Start, Trace, read, write};
 use kirk_runtime::{
-    Executive, Input, Outcome, Output, Patience, Plan, Reason, Scope, Settings, Setup, handovers, verify,
+    Executive, Input, Outcome, Output, Patience, Plan, Reason, Scope, Sending, Settings, Setup, Speed,
+    handovers, replay, verify,
 };
+use serde_json::value::RawValue;
 
 /// A drive of 10 to 20 s, heard at once, a photo within 5 s of its end, and home 40 s after it and within 60 to 80 s.
 fn executive() -> Executive {
@@ -103,6 +106,58 @@ fn news_that_is_too_early_is_taken_for_true_and_the_mission_goes_on() {
     let photo = execution.rows.iter().find(|row| row.event == "photo").unwrap();
     assert_eq!(photo.time.unwrap().to_string(), "6");
     assert!(!verify(executive.network(), &execution).is_empty(), "it is not what the model says");
+}
+
+#[test]
+fn a_plan_is_repeated_from_the_moment_it_was_asked_for_whatever_was_confirmed_meanwhile() {
+    let network = json::read(
+        r#"{"format": "kirk-network/1", "origin": "go",
+            "events": ["go", "c", "x", "y"],
+            "requirements": [{"from": "c", "to": "x", "lower": 0}, {"from": "c", "to": "y", "lower": 2}],
+            "contingents": [{"from": "go", "to": "c", "lower": 1, "upper": 3}]}"#,
+    )
+    .unwrap();
+    let plan = Plan::new(&network).unwrap();
+    let millisecond = |number: i64| Time::from_micros(1_000 * number);
+    let setup = Setup {
+        program: "test".into(),
+        run: "run".into(),
+        settings: Settings { lateness: Duration::from_micros(90_000), ..Settings::default() },
+        handovers: handovers(plan.network(), None, Scope::All),
+        driver: true,
+        patience: Patience { first: Duration::from_micros(1), most: Duration::from_micros(1) },
+    };
+    let clocks = Clocks { boot: None, since_boot: 0, calendar: 0 };
+    let shell = RawValue::from_string("null".into()).unwrap();
+    let start = Start::new(&network, &setup, Speed::REAL, clocks, shell, "test");
+    let mut executive = Executive::new(plan, setup);
+    let (mut journal, mut checksum) = write(&Line::new(Time::ZERO, Record::Start(Box::new(start))), 0);
+    let mut note = |at: Time, record: Record| {
+        let (text, next) = write(&Line::new(at, record), checksum);
+        journal.push_str(&text);
+        checksum = next;
+    };
+    let mut happens = |executive: &mut Executive, at: Time, input: Input| {
+        if let Some(input) = executive.handle(at, input).record {
+            note(at, Record::In(input));
+        }
+        while let Some(output) = executive.poll_output() {
+            if let Output::Send(Sending { id, due, attempt, .. }) = output {
+                note(at, Record::Out(Trace::Dispatch { id, due, attempt }));
+            }
+        }
+    };
+    happens(&mut executive, Time::ZERO, Input::Timeout {});
+    happens(&mut executive, Time::ZERO, sent("run/go"));
+    let news = Input::observed(&network, network.find("c").unwrap());
+    happens(&mut executive, Time::ZERO, news);
+    let rebuild = executive.poll_rebuild(Time::ZERO).unwrap();
+    // The clock goes on while it is planned, and what was known is confirmed.
+    happens(&mut executive, millisecond(3), executed("run/go", None));
+    happens(&mut executive, millisecond(6), Input::rebuilt(rebuild.run()));
+    let journal = read(journal.as_bytes()).unwrap();
+    let repeated = replay(&journal, |_, _, _| {}).unwrap();
+    assert_eq!(repeated.executive.execution(second(1), true), executive.execution(second(1), true));
 }
 
 #[test]

@@ -27,11 +27,16 @@ impl Dispatcher {
     /// What is to be planned anew because of news, if anything is. While events are in flight it is not known from where
     /// to plan, so that has to wait.
     pub fn poll_rebuild(&mut self, now: Time) -> Option<Rebuild> {
+        self.rebuild_from(self.now.max(now))
+    }
+
+    /// The same, planned from a time that may have passed since it was asked for, as a journal says.
+    pub(crate) fn rebuild_from(&mut self, from: Time) -> Option<Rebuild> {
         if !self.stale || self.asked || !self.in_flight.is_empty() || self.missed.is_some() {
             return None;
         }
         self.asked = true;
-        Some(self.rebuild(self.now.max(now)))
+        Some(self.rebuild(from))
     }
 
     /// True if this is the plan for all that has happened.

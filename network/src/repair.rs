@@ -111,7 +111,7 @@ pub enum Ended {
 
 /// The cheapest repairs; `None` if the network is controllable as it is.
 ///
-/// Each is proven: with its changes [`check()`] says "yes", and with any one of them less by a unit (by a microsecond, where it
+/// Each is proven: with its changes [`check`](crate::check::check) says "yes", and with any one of them less by a unit (by a microsecond, where it
 /// is between the last whole unit and its limit; left out, where that is all there is) it says "no". The first is the cheapest of
 /// all of whole units, if the search ended [`Ended::Complete`], no chain has late news, and no requirement that may change
 /// makes an event one with something heard late. In a chain with late news the lengths of the reduction may switch at any change, and what a conflict

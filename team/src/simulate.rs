@@ -96,7 +96,7 @@ impl<'a> Ready<'a> {
     /// Makes the plans of all agents.
     ///
     /// # Errors
-    /// [`NoPlan`] if a view cannot be executed, which those of [`crate::find`] can.
+    /// [`NoPlan`] if a view cannot be executed, which those of [`crate::find()`] can.
     pub fn new(team: &'a Team, agreement: &Agreement) -> Result<Ready<'a>, NoPlan> {
         let whole = Whole::new(team);
         let merged = &whole.merged.network;

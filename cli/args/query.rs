@@ -14,7 +14,7 @@ pub(crate) struct Query {
     #[command(flatten)]
     pub(crate) selection: Selection,
     /// Ask of the execution at T seconds [default: 0 for a mission, the last moment of a record or a journal].
-    #[arg(long, value_name = "T")]
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
     pub(crate) at: Option<String>,
     /// Say all about this event, instead of a line about each that is to come (repeatable).
     #[arg(long, value_name = "NAME")]

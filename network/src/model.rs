@@ -118,17 +118,8 @@ impl Network {
         requirements: Vec<Requirement>,
         contingents: Vec<ContingentLink>,
     ) -> Result<Network, Vec<ModelError>> {
-        let mut errors = faults_of_names(&events);
-        let mut network = Network {
-            name,
-            origin,
-            link_of: vec![None; events.len()],
-            events: events.into(),
-            requirements,
-            contingents,
-        };
-        network.validate(&mut errors);
-        if errors.is_empty() { Ok(network) } else { Err(errors) }
+        let errors = faults_of_names(&events);
+        Network::valid(name, origin, events, requirements, contingents, errors)
     }
 
     /// The same for events whose names are those of a valid network, shared out anew: they are not looked at again.
@@ -140,7 +131,18 @@ impl Network {
         contingents: Vec<ContingentLink>,
     ) -> Result<Network, Vec<ModelError>> {
         debug_assert_eq!(faults_of_names(&events), []);
-        let mut errors = Vec::new();
+        Network::valid(name, origin, events, requirements, contingents, Vec::new())
+    }
+
+    /// The network, if neither these errors nor others are found.
+    fn valid(
+        name: String,
+        origin: EventId,
+        events: Vec<Event>,
+        requirements: Vec<Requirement>,
+        contingents: Vec<ContingentLink>,
+        mut errors: Vec<ModelError>,
+    ) -> Result<Network, Vec<ModelError>> {
         let mut network = Network {
             name,
             origin,

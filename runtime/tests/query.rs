@@ -139,21 +139,26 @@ fn names<'a>(lost: impl IntoIterator<Item = &'a Lost>) -> BTreeSet<String> {
     lost.into_iter().map(name).collect()
 }
 
+/// A random mission, one of Nature's events, and when it is said to be heard.
+fn rumour(seed: u64) -> Option<(Plan, EventId, Time, Random)> {
+    let plan = Plan::new(&random::network(seed, &shapes()[(seed % 4) as usize])).ok()?;
+    let mut random = Random::new(seed);
+    let event = plan.network().contingents().get(random.within(0..=3) as usize)?.to;
+    let time = Time::from_micros(random.within(0..=40) * 1_000_000);
+    Some((plan, event, time, random))
+}
+
 /// Nature may do what she likes once; what is said to be kept then is kept, and what is broken is named.
 #[test]
 fn a_rehearsal_breaks_what_it_says_and_nothing_else() {
     let (mut mended, mut failed) = (0, 0);
     for seed in 0..cases(1_200) {
-        let network = random::network(seed, &shapes()[(seed % 4) as usize]);
-        let Ok(plan) = Plan::new(&network) else { continue };
+        let Some((plan, event, time, mut random)) = rumour(seed) else { continue };
         let network = plan.network();
-        let mut random = Random::new(seed);
-        let Some(link) = network.contingents().get(random.within(0..=3) as usize) else { continue };
-        let time = Time::from_micros(random.within(0..=40) * 1_000_000);
         let simulation = Simulation {
             nature: [Temper::Upper, Temper::Lower, Temper::Random][random.within(0..=2) as usize],
             seed,
-            observations: vec![(link.to, time)],
+            observations: vec![(event, time)],
             internal: true,
             what_if: true,
             ..Simulation::default()
@@ -184,21 +189,17 @@ fn a_rehearsal_breaks_what_it_says_and_nothing_else() {
 fn what_if_something_is_heard_is_what_a_rehearsal_does() {
     let (mut possible, mut beyond) = (0, 0);
     for seed in 0..cases(1_200) {
-        let network = random::network(seed, &shapes()[(seed % 4) as usize]);
-        let Ok(plan) = Plan::new(&network) else { continue };
-        let network = plan.network();
         // Nothing but this is ever heard.
-        let mut random = Random::new(seed);
-        let Some(link) = network.contingents().get(random.within(0..=3) as usize) else { continue };
-        let time = Time::from_micros(random.within(0..=40) * 1_000_000);
+        let Some((plan, event, time, _)) = rumour(seed) else { continue };
+        let network = plan.network();
         let mut situation = Situation::of_mission(&plan);
         let described =
-            || format!("seed {seed}, {} at {time}\n{}", network.label(link.to), random::describe(network));
-        match situation.hear(link.to, time) {
+            || format!("seed {seed}, {} at {time}\n{}", network.label(event), random::describe(network));
+        match situation.hear(event, time) {
             Err(Unheard::NotBegun { start }) => assert!(situation.fixed(start).is_none(), "{}", described()),
             Err(unheard) => panic!("{unheard:?}, {}", described()),
             Ok(heard) => {
-                assert_eq!(situation.heard_of(link.to), Some(time), "{}", described());
+                assert_eq!(situation.heard_of(event), Some(time), "{}", described());
                 match heard {
                     Heard::Possible => {
                         assert!(situation.can_be_kept() || is_chained(network), "{}", described());
@@ -208,7 +209,7 @@ fn what_if_something_is_heard_is_what_a_rehearsal_does() {
                         // In a chain a plan may be too careful.
                         let agrees = aftermath.guaranteed == situation.can_be_kept();
                         assert!(agrees || is_chained(network), "{}", described());
-                        let how = situation.fixed(link.to).map(|(_, how)| how);
+                        let how = situation.fixed(event).map(|(_, how)| how);
                         assert_ne!(how, Some(How::Dispatched), "{}", described());
                         beyond += 1;
                     }

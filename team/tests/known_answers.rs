@@ -4,7 +4,7 @@
 
 mod build;
 
-use build::{Builder, NEVER, ORIGIN};
+use build::{Builder, NEVER, ORIGIN, together};
 use kirk_network::merge::merge;
 use kirk_network::{Delay, Duration, Part};
 use kirk_team::{Agreement, Cause, Change, Options, Remedy, Team, Verdict, find, remedies};
@@ -85,19 +85,6 @@ fn fourteen_seconds_are_one_too_few() {
     assert_eq!(causes, parts.map(|part| (Cause::Part(part), 1)));
     let within = Remedy { link: 0, change: Change::Within(Duration::from_secs(14)) };
     assert_eq!(remedies(&team, &why, &Options::default()), Ok(vec![within]));
-}
-
-/// Two events that are to be one moment, after something that ends 3 to 8 s after the start, and within so many seconds of it.
-fn together(within: i64, news: [i64; 2]) -> Builder {
-    let mut b = Builder::new(&["one", "two"]);
-    let c = b.contingent("c", "one", ORIGIN, [3, 8], [0, 0]);
-    let x = b.event("x1", "one");
-    let y = b.event("x2", "two");
-    b.require(c, x, [0, within]);
-    b.require(c, y, [0, within]);
-    b.require(x, y, [0, 0]);
-    b.link("one", "two", news, false);
-    b
 }
 
 #[test]

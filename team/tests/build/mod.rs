@@ -98,3 +98,16 @@ impl Builder {
         Team::new(self.network(), self.agents.clone(), self.links.clone(), &owners)
     }
 }
+
+/// Two events that are to be one moment, after something that ends 3 to 8 s after the start, and within so many seconds of it.
+pub fn together(within: i64, news: [i64; 2]) -> Builder {
+    let mut b = Builder::new(&["one", "two"]);
+    let c = b.contingent("c", "one", ORIGIN, [3, 8], [0, 0]);
+    let x = b.event("x1", "one");
+    let y = b.event("x2", "two");
+    b.require(c, x, [0, within]);
+    b.require(c, y, [0, within]);
+    b.require(x, y, [0, 0]);
+    b.link("one", "two", news, false);
+    b
+}

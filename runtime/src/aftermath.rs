@@ -94,9 +94,31 @@ impl Judge<'_> {
     fn happened(&self, event: EventId, alone: bool) -> Option<Interval> {
         match (self.so_far.events[event.index()], self.truth.get(event.index()).copied().flatten()) {
             (Seen::Executed(time), _) => Some(Interval::at(time)),
-            (Seen::Nature { .. }, Some(truth)) if truth <= self.so_far.now => Some(Interval::at(truth)),
-            (Seen::Nature { happened, settled, .. }, None) if alone || settled => Some(happened),
+            (Seen::Nature { .. }, Some(truth)) if truth <= self.so_far.now || self.is_decided(event) => {
+                Some(Interval::at(truth))
+            }
+            (Seen::Nature { happened, .. }, None) if alone || self.is_decided(event) => Some(happened),
             _ => None,
+        }
+    }
+
+    /// True if nothing that is still to come moves an event: it has happened as far as the plan is concerned, or will at a fixed
+    /// distance from what has.
+    fn is_decided(&self, event: EventId) -> bool {
+        let network = self.dispatcher.network();
+        let mut at = event;
+        loop {
+            match (self.so_far.events[at.index()], network.link_of(at)) {
+                (Seen::Executed(_) | Seen::Nature { settled: true, .. }, _) => return true,
+                (Seen::Nature { .. }, Some(link)) => {
+                    let link = network.contingents()[link];
+                    if link.lower < link.upper {
+                        return false;
+                    }
+                    at = link.from;
+                }
+                _ => return false,
+            }
         }
     }
 }

@@ -10,21 +10,15 @@ pub(crate) fn lines(aftermath: &Aftermath) -> Vec<String> {
         let found = |lost: &Lost| lost.found.map_or(String::new(), |length| format!(": {found} {length} s"));
         lost.iter().map(|lost| format!("  {what:<9} {}{}", words(lost), found(lost))).collect()
     };
-    // What is broken is not to be given up any more.
-    let to_give_up: Vec<Lost> = given_up.iter().filter(|lost| !is_among(lost, violated)).cloned().collect();
-    let lost = violated.len() + in_doubt.len() + to_give_up.len();
+    let lost = violated.len() + in_doubt.len() + given_up.len();
     let mut lines = of("broken", violated, "it was");
     lines.extend(of("in doubt", in_doubt, "it may have been"));
-    lines.extend(of("given up", &to_give_up, ""));
+    lines.extend(of("given up", given_up, ""));
     lines.push(match lost {
         0 => format!("  {:<9} all {kept} bounds", "kept"),
         _ => format!("  {:<9} {kept} of {} bounds", "kept", kept + lost),
     });
     lines
-}
-
-fn is_among(lost: &Lost, others: &[Lost]) -> bool {
-    others.iter().any(|other| Lost { found: None, ..other.clone() } == Lost { found: None, ..lost.clone() })
 }
 
 /// A bound as a clause.

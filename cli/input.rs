@@ -48,7 +48,11 @@ type Reader = fn(&str) -> Result<(Network, SourceMap), Vec<ReadProblem>>;
 
 /// Reads and compiles an input file; `-` is standard input.
 pub(crate) fn load(file: &str, selection: &Selection) -> Input {
-    let text = match text(file) {
+    load_one(file, bytes_of(file), selection)
+}
+
+fn load_one(file: &str, bytes: Bytes, selection: &Selection) -> Input {
+    let text = match text_of(file, bytes) {
         Ok(text) => text,
         Err(unreadable) => return Input::broken(shown(file), *unreadable),
     };
@@ -104,8 +108,14 @@ fn is_same_file(one: &str, other: &str) -> bool {
 
 /// Reads several files and compiles them as one program.
 pub(crate) fn load_all(files: &[String], selection: &Selection) -> Input {
+    load_begun(files, None, selection)
+}
+
+/// The same where the first of them was read already: a pipe can be read only once.
+pub(crate) fn load_begun(files: &[String], mut first: Option<Bytes>, selection: &Selection) -> Input {
+    let mut bytes = |file: &str| first.take().unwrap_or_else(|| bytes_of(file));
     if let [file] = files {
-        return load(file, selection);
+        return load_one(file, bytes(file), selection);
     }
     let mut sources = Vec::new();
     let mut diagnostics = Vec::new();
@@ -115,7 +125,7 @@ pub(crate) fn load_all(files: &[String], selection: &Selection) -> Input {
         let text = if files[..index].contains(file) {
             Err(Unreadable::at_all(problem(format!("`{}` is given twice", shown(file)))))
         } else {
-            text(file)
+            text_of(file, bytes(file))
         };
         let (text, whole) = match text {
             Ok(text) => (text, true),
@@ -187,8 +197,17 @@ pub(crate) fn without_mark(text: &str) -> &str {
 
 /// The text of an input file.
 pub(crate) fn text(file: &str) -> Result<String, Box<Unreadable>> {
+    text_of(file, bytes_of(file))
+}
+
+fn bytes_of(file: &str) -> Bytes {
+    read(file, LARGEST_NETWORK)
+}
+
+fn text_of(file: &str, bytes: Bytes) -> Result<String, Box<Unreadable>> {
     let start = Span::default();
-    let bytes = read(file, LARGEST_NETWORK)
+    let bytes = bytes
+        .and_then(|bytes| at_most(file, bytes, LARGEST_NETWORK))
         .map_err(|message| Unreadable::at_all(Diagnostic::error(Code::CannotRead, start, message)))?;
     let text = String::from_utf8(bytes)
         .map_err(|error| Unreadable::bytes(error.as_bytes(), error.utf8_error().valid_up_to()))?;
@@ -232,8 +251,11 @@ fn with_oracles(_: &str) -> Result<(Network, SourceMap), Vec<ReadProblem>> {
     Err(vec![ReadProblem { offset: 0, message: format!("the kind of network is {refused}") }])
 }
 
-/// The bytes of a file, at most so many, or a sentence that says why not.
-pub(crate) fn read(file: &str, most: u64) -> Result<Vec<u8>, String> {
+/// The bytes of a file, or a sentence that says why not.
+pub(crate) type Bytes = Result<Vec<u8>, String>;
+
+/// Of a file that may have at most so many.
+pub(crate) fn read(file: &str, most: u64) -> Bytes {
     let mut bytes = Vec::new();
     let result = if file == "-" {
         io::stdin().lock().take(most + 1).read_to_end(&mut bytes)
@@ -255,11 +277,16 @@ pub(crate) fn read(file: &str, most: u64) -> Result<Vec<u8>, String> {
             };
             Err(format!("cannot read `{file}`: {why}"))
         }
-        Ok(_) if bytes.len() as u64 > most => {
-            Err(format!("`{file}` has more than {most} bytes; kirk does not read that"))
-        }
-        Ok(_) => Ok(bytes),
+        Ok(_) => at_most(file, bytes, most),
     }
+}
+
+/// Refuses what is larger.
+pub(crate) fn at_most(file: &str, bytes: Vec<u8>, most: u64) -> Bytes {
+    if bytes.len() as u64 > most {
+        return Err(format!("`{file}` has more than {most} bytes; kirk does not read that"));
+    }
+    Ok(bytes)
 }
 
 fn program(sources: Vec<Source>, selection: &Selection) -> Input {

@@ -7,18 +7,19 @@ use std::io;
 
 use kirk_compiler::{Code, Diagnostic, Span, nearest};
 use kirk_network::left::Left;
+use kirk_network::promise::Promise;
 use kirk_network::{Duration, EventId, Network, Time};
 use kirk_runtime::journal::{is_journal, read as read_journal};
 use kirk_runtime::{Ended, Heard, Situation, Unheard, Waits};
 
 use crate::args::{Common, Query, Selection, TextOrJson};
-use crate::input::{load_all, read};
+use crate::input::{Bytes, load_begun, read};
 use crate::observations::{self, Observations};
 use crate::output::{Status, complain, print, remark};
 use crate::replay::LARGEST_JOURNAL;
 use crate::report::Reporter;
 use crate::run::plan_of;
-use crate::verify::read_execution;
+use crate::verify::execution_of;
 
 pub(crate) fn query(arguments: &Query, common: &Common) -> io::Result<Status> {
     let wrong = |message: String| {
@@ -130,7 +131,7 @@ struct Line {
     news: Option<(Time, Option<Time>)>,
     with_driver: Option<Time>,
     /// By when it can be promised, and not before when.
-    promise: Option<(Option<Time>, Option<Time>)>,
+    promise: Option<Promise>,
 }
 
 impl Line {
@@ -193,16 +194,15 @@ struct Subject {
     situation: Situation,
 }
 
-/// What the files lead to; otherwise what is wrong with them has been said.
+/// What the files lead to; otherwise what is wrong with them has been said. The first says what it is, and is read once: it may be
+/// a pipe.
 fn subject(arguments: &Query, at: Option<Time>, common: &Common) -> io::Result<Result<Subject, Status>> {
-    let first = arguments.files[0].as_str();
-    let bytes = if first == "-" { None } else { read(first, LARGEST_JOURNAL).ok() };
-    match bytes {
-        Some(bytes) if is_journal(&bytes) => Ok(of_journal(arguments, &bytes, at, common)),
-        Some(bytes) if is_record(&bytes) => of_record(arguments, at, common),
-        None if arguments.files.len() > 1 && first == "-" => of_record(arguments, at, common),
+    let first = read(&arguments.files[0], LARGEST_JOURNAL);
+    match &first {
+        Ok(bytes) if is_journal(bytes) => Ok(of_journal(arguments, bytes, at, common)),
+        Ok(bytes) if is_record(bytes) => of_record(arguments, first, at, common),
         _ => {
-            let mission = mission(&arguments.files, &arguments.selection, common)?;
+            let mission = mission(&arguments.files, Some(first), &arguments.selection, common)?;
             Ok(mission.map(|(program, plan)| {
                 let mut situation = Situation::of_mission(&plan);
                 situation.pass(at.unwrap_or(Time::ZERO));
@@ -239,7 +239,12 @@ fn of_journal(arguments: &Query, bytes: &[u8], at: Option<Time>, common: &Common
     })
 }
 
-fn of_record(arguments: &Query, at: Option<Time>, common: &Common) -> io::Result<Result<Subject, Status>> {
+fn of_record(
+    arguments: &Query,
+    bytes: Bytes,
+    at: Option<Time>,
+    common: &Common,
+) -> io::Result<Result<Subject, Status>> {
     let (file, files) = (&arguments.files[0], &arguments.files[1..]);
     if files.is_empty() {
         complain(&format!(
@@ -251,7 +256,7 @@ fn of_record(arguments: &Query, at: Option<Time>, common: &Common) -> io::Result
         complain("the record and the mission cannot both be standard input");
         return Ok(Err(Status::Wrong));
     }
-    let execution = match read_execution(file) {
+    let execution = match execution_of(file, bytes) {
         Ok(execution) => execution,
         Err(wrong) => {
             let (source, diagnostic) = *wrong;
@@ -260,7 +265,7 @@ fn of_record(arguments: &Query, at: Option<Time>, common: &Common) -> io::Result
         }
     };
     let selection = Selection { otherwise: Some(execution.program.clone()), ..arguments.selection.clone() };
-    let (program, plan) = match mission(files, &selection, common)? {
+    let (program, plan) = match mission(files, None, &selection, common)? {
         Ok(mission) => mission,
         Err(status) => return Ok(Err(status)),
     };
@@ -272,13 +277,14 @@ fn of_record(arguments: &Query, at: Option<Time>, common: &Common) -> io::Result
     ))
 }
 
-/// A mission that is proven, and what it is called.
+/// A mission that is proven, and what it is called. The first of its files may have been read already.
 fn mission(
     files: &[String],
+    first: Option<Bytes>,
     selection: &Selection,
     common: &Common,
 ) -> io::Result<Result<(String, kirk_runtime::Plan), Status>> {
-    let mut input = load_all(files, selection);
+    let mut input = load_begun(files, first, selection);
     let plan = plan_of(&mut input);
     // Notes on the mission are no answer.
     let quiet = Common { quiet: true, ..common.clone() };

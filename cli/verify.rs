@@ -10,7 +10,7 @@ use kirk_runtime::{Execution, Violation, lucky, replay, verify as check};
 use serde::Serialize;
 
 use crate::args::{Common, Selection, TextOrJson, Verify};
-use crate::input::{load_all, read, shown, without_mark};
+use crate::input::{Bytes, at_most, load_all, read, shown, without_mark};
 use crate::json::line;
 use crate::output::{Status, complain, print, print_line};
 use crate::report::Reporter;
@@ -83,7 +83,12 @@ pub(crate) fn verify(arguments: &Verify, common: &Common) -> io::Result<Status> 
 
 /// Reads a record, or what a journal leads to.
 pub(crate) fn read_execution(file: &str) -> Result<Execution, Box<(Source, Diagnostic)>> {
-    let bytes = read(file, LARGEST_RECORD).map_err(|message| {
+    execution_of(file, read(file, LARGEST_RECORD))
+}
+
+/// The same where the file was read already.
+pub(crate) fn execution_of(file: &str, bytes: Bytes) -> Result<Execution, Box<(Source, Diagnostic)>> {
+    let bytes = bytes.and_then(|bytes| at_most(file, bytes, LARGEST_RECORD)).map_err(|message| {
         Box::new((
             Source::new(shown(file), ""),
             Diagnostic::error(Code::CannotRead, Span::default(), message),

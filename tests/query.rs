@@ -11,7 +11,7 @@ use std::time::{Duration as Real, Instant};
 use binary::{kirk, kirk_with_input, stderr, stdout};
 use kirk_network::{Duration, Network, Time};
 use kirk_runtime::journal::{Clocks, Line, Record, Start, Trace, write};
-use kirk_runtime::{Executive, Input, Patience, Plan, Settings, Setup, Speed, Strategy};
+use kirk_runtime::{Executive, Input, Patience, Plan, Scope, Settings, Setup, Speed, Strategy, handovers};
 use serde_json::{Value, json};
 
 const ROBOT: &str = "examples/rmpl/robot.rmpl";
@@ -101,15 +101,20 @@ fn a_record_is_asked_with_its_mission() {
     assert_eq!(stdout(&from_input), stdout(&kirk(&with(&["--at", "30"]))));
 }
 
-/// The journal of a mission in which this was heard, up to a time, and how many lines it has.
+/// The journal of a mission in which this was heard, up to a time.
 fn journal(network: &Network, news: &[(i64, &str)], until: i64) -> String {
+    journal_of(network, news, until, false)
+}
+
+/// The same, and there may be a driver, which confirms nothing.
+fn journal_of(network: &Network, news: &[(i64, &str)], until: i64, driver: bool) -> String {
     let seconds = |seconds: i64| Time::from_micros(seconds * 1_000_000);
     let setup = Setup {
         program: "main".into(),
         run: "r".into(),
         settings: Settings::of(Strategy::Optimistic),
-        handovers: Vec::new(),
-        driver: false,
+        handovers: if driver { handovers(network, None, Scope::All) } else { Vec::new() },
+        driver,
         patience: Patience { first: Duration::ZERO, most: Duration::ZERO },
     };
     let clocks = Clocks { boot: None, since_boot: 0, calendar: 0 };
@@ -153,6 +158,18 @@ fn journal(network: &Network, news: &[(i64, &str)], until: i64) -> String {
         .collect()
 }
 
+/// If `b` is heard too early, `c` can be no more than 20 s after it or at least 40 s after `a`, not both.
+const TIGHT: &str = r#"{"format": "kirk-network/1", "name": "tight", "origin": "a", "events": ["a", "b", "c"],
+    "requirements": [{"from": "b", "to": "c", "lower": 5, "upper": 20}, {"from": "a", "to": "c", "lower": 40}],
+    "contingents": [{"from": "a", "to": "b", "lower": 20, "upper": 30}]}"#;
+
+/// A text without what comes after a line that contains this.
+fn cut_after(text: &str, last: &str) -> String {
+    let lines: Vec<&str> = text.split_inclusive('\n').collect();
+    let at = lines.iter().position(|line| line.contains(last)).unwrap();
+    lines[..=at].concat()
+}
+
 fn robot() -> Network {
     let text = stdout(&kirk(&["compile", ROBOT, "-q", "--format", "json"]));
     kirk_network::json::read(&text).unwrap()
@@ -179,6 +196,65 @@ fn a_journal_is_asked_whole_or_torn() {
         &query(&broken, &[]),
         &["query", &half, ROBOT],
     ]));
+}
+
+#[test]
+fn a_journal_that_ends_with_news_against_the_model_is_planned_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name).display().to_string();
+    let (late, early, lost) = (file("late"), file("early"), file("lost"));
+    let up_to_news = |network: &Network, at: i64, event: &str| {
+        cut_after(&journal(network, &[(at, event)], 100), "\"observed\"")
+    };
+    fs::write(&late, up_to_news(&robot(), 60, DOWNLINK)).unwrap();
+    fs::write(&early, up_to_news(&robot(), 3, DOWNLINK)).unwrap();
+    let tight = kirk_network::json::read(TIGHT).unwrap();
+    fs::write(&lost, up_to_news(&tight, 12, "b")).unwrap();
+    insta::assert_snapshot!(session(&[
+        &query(&late, &[]),
+        &query(&late, &["--at", "70"]),
+        &query(&late, &["--at", "59"]),
+        &query(&early, &[]),
+        &query(&lost, &[]),
+        &query(&lost, &["--at", "11"]),
+        &query(&lost, &["--at", "60"]),
+    ]));
+}
+
+#[test]
+fn news_that_waits_for_a_driver_is_counted_with() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("held").display().to_string();
+    let text = cut_after(&journal_of(&robot(), &[(22, DOWNLINK)], 25, true), "\"observed\"");
+    fs::write(&file, text).unwrap();
+    insta::assert_snapshot!(session(&[
+        &query(&file, &[]),
+        &query(&file, &["--heard", "robot-drilling:end@60"])
+    ]));
+}
+
+#[test]
+fn a_record_of_a_failure_is_asked_before_and_after_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = folder.path().join("record.json").display().to_string();
+    let network = folder.path().join("tight.json").display().to_string();
+    fs::write(&network, TIGHT).unwrap();
+    let run = ["run", &network, "--simulate", "--observe", "b@12", "--what-if", "--format", "json"];
+    fs::write(&record, stdout(&kirk(&run))).unwrap();
+    let with = |rest: &[&'static str]| [&["query", &record, &network], rest].concat();
+    insta::assert_snapshot!(session(&[&with(&[]), &with(&["--at", "11"]), &with(&["--at", "60"])]));
+}
+
+#[test]
+fn a_pipe_is_asked_and_read_once() {
+    let asked = |file: &str, input: &[u8]| kirk_with_input(&["query", file, "--at", "22"], input);
+    let text = fs::read(ROBOT).unwrap();
+    let whole = kirk(&query(ROBOT, &["--at", "22"]));
+    let half = journal(&robot(), &[(22, DOWNLINK)], 25);
+    for file in ["-", "/dev/stdin"] {
+        assert_eq!(stdout(&asked(file, &text)), stdout(&whole), "{file}");
+        assert!(stdout(&asked(file, half.as_bytes())).contains("robot-drilling:end"), "{file}");
+    }
 }
 
 #[test]
@@ -269,7 +345,7 @@ fn wrong_questions_are_refused() {
         (&["no/such/file"], "K0701"),
         (&["no/such/file.rmpl"], "K0701"),
         (&[&file, ROBOT], "K0803"),
-        (&["-", "-"], "cannot both be standard input"),
+        (&["-", "-"], "is given twice"),
     ];
     for (arguments, said) in wrong {
         let output = kirk(&[&["query"], arguments].concat());

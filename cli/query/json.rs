@@ -2,6 +2,7 @@
 
 use std::io;
 
+use kirk_network::promise::Promise;
 use kirk_network::{Duration, Time};
 use kirk_runtime::{Aftermath, Ended, Failure, Heard, Situation};
 use serde::Serialize;
@@ -88,7 +89,8 @@ impl<'a> PictureJson<'a> {
         let (outcome, failure) = match &picture.ended {
             Some(Ended::Completed) => ("completed", None),
             Some(Ended::Failed(failure)) => ("failed", Some(failure)),
-            Some(Ended::NoPlan) | None => ("running", None),
+            Some(Ended::NoPlan) => ("failed", None),
+            None => ("running", None),
         };
         PictureJson {
             now: picture.now,
@@ -164,7 +166,7 @@ impl<'a> EventJson<'a> {
             done: line.done,
             heard: line.news.map(|(earliest, latest)| RangeJson { earliest, latest }),
             with_driver: line.with_driver,
-            promise: line.promise.map(|(by, not_before)| PromiseJson { by, not_before }),
+            promise: line.promise.map(|Promise { by, from }| PromiseJson { by, not_before: from }),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! The answers of `kirk query` for people.
 
+use kirk_network::promise::Promise;
 use kirk_network::{Duration, EventId, Network, Time};
 use kirk_runtime::{Ended, Heard, Situation, Waits};
 
@@ -154,7 +155,7 @@ fn details(line: &Line, now: Time) -> Vec<String> {
     if let Some(since) = line.with_driver {
         say("is", format!("with the driver since {since} s"));
     }
-    if let Some((by, put_off)) = line.promise {
+    if let Some(Promise { by, from: put_off }) = line.promise {
         say("promised", by.map_or("by no time".to_string(), |by| format!("by {by} s at the earliest")));
         say(
             "put off",

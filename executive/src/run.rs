@@ -322,8 +322,11 @@ impl Loop {
             let (desk, work) = (self.desk.clone(), rebuild.clone());
             let planning = move || desk.rebuilt(planned(work));
             if std::thread::Builder::new().spawn(planning).is_err() {
-                // The machine has no more threads: late is better than never.
-                self.desk.rebuilt(planned(rebuild));
+                // The machine has no more threads: late is better than never, and by the desk it might never come, as only this
+                // thread takes from it.
+                let rebuilt = planned(rebuild);
+                self.happens(self.clock.now(), Input::rebuilt(rebuilt));
+                self.perform();
             }
         }
     }

@@ -11,6 +11,7 @@
 use crate::conflict::Part;
 use crate::controllability::{Step, is_controllable, negative_cycle};
 use crate::model::{Delay, EventId, Network, Requirement};
+use crate::promise::Promise;
 use crate::reduce::{Progress, reduce_rest};
 use crate::stnu::TooLarge;
 use crate::time::{Bound, Duration, Interval, Time};
@@ -96,19 +97,16 @@ pub fn can_be_kept(network: &Network, so_far: &SoFar) -> bool {
     decide(network, &so_far.planned(network)).unwrap_or(false)
 }
 
-/// What can be promised of the time of an event of ours that is to come: that it happens by then (the earliest time of which that
-/// can be promised, if there is one), and that it does not happen before (the latest time of which that can be promised; `None` if
-/// it can be of every time). `None` if not everything can be kept any more.
-pub fn promise_left(
-    network: &Network,
-    so_far: &SoFar,
-    event: EventId,
-) -> Option<(Option<Time>, Option<Time>)> {
+/// What can be promised of the time of an event of ours that is to come; `None` if not everything can be kept any more.
+///
+/// # Errors
+/// [`TooLarge`] if the durations add up to more than 64-bit microseconds can hold.
+pub fn promise_left(network: &Network, so_far: &SoFar, event: EventId) -> Result<Option<Promise>, TooLarge> {
     /// Later than that nothing happens.
     const FARTHEST: i64 = Duration::MAX.as_micros();
     let progress = so_far.planned(network);
-    if !decide(network, &progress).ok()? {
-        return None;
+    if !decide(network, &progress)? {
+        return Ok(None);
     }
     let mut asked = network.clone();
     let unbounded =
@@ -119,33 +117,37 @@ pub fn promise_left(
             micros.map_or(Bound::Infinite, |micros| Bound::Finite(Duration::from_micros(micros)))
         };
         *asked.requirement_mut(at) = Requirement { lower: bound(lower), upper: bound(upper), ..unbounded };
-        decide(&asked, &progress).unwrap_or(false)
+        decide(&asked, &progress)
     };
     let now = so_far.now.as_micros();
-    let by = match holds(None, Some(FARTHEST)) {
+    let by = match holds(None, Some(FARTHEST))? {
         false => None,
-        true => Some(first_yes(now, FARTHEST, |time| holds(None, Some(time)))),
+        true => Some(first_yes(now, FARTHEST, |time| holds(None, Some(time)))?),
     };
-    let from = match holds(Some(FARTHEST), None) {
+    let from = match holds(Some(FARTHEST), None)? {
         true => None,
-        false => Some(first_yes(now, FARTHEST, |time| !holds(Some(time), None)) - 1),
+        false => Some(first_yes(now, FARTHEST, |time| Ok(!holds(Some(time), None)?))? - 1),
     };
-    Some((by.map(Time::from_micros), from.map(Time::from_micros)))
+    Ok(Some(Promise { by: by.map(Time::from_micros), from: from.map(Time::from_micros) }))
 }
 
 /// The least number from `first` on of which the answer is yes, as it is of all that are greater; of `last` it is yes.
-fn first_yes(first: i64, last: i64, mut is_yes: impl FnMut(i64) -> bool) -> i64 {
+fn first_yes(
+    first: i64,
+    last: i64,
+    mut is_yes: impl FnMut(i64) -> Result<bool, TooLarge>,
+) -> Result<i64, TooLarge> {
     let (mut no, mut yes, mut step) = (first - 1, last, 1_000_000);
     while yes - no > 1 {
         let middle = no + ((yes - no) / 2).min(step);
-        if is_yes(middle) {
+        if is_yes(middle)? {
             yes = middle
         } else {
             no = middle
         }
         step = step.saturating_mul(2);
     }
-    yes
+    Ok(yes)
 }
 
 /// The sides of requirements that have to be given up so that all others can be kept, if not all can. None of them could stay beside
@@ -156,20 +158,18 @@ fn first_yes(first: i64, last: i64, mut is_yes: impl FnMut(i64) -> bool) -> i64 
 pub fn given_up(network: &Network, so_far: &SoFar) -> Result<Vec<Part>, TooLarge> {
     let progress = so_far.planned(network);
     let mut rest = network.clone();
-    let mut given_up: Vec<Part> = Vec::new();
+    let mut found: Vec<(Part, Bound)> = Vec::new();
     // It ends: every round makes a finite bound infinite, and without any nothing is left to break.
     while let Some(part) = to_blame(&rest, &progress)? {
-        *side(&mut rest, part) = Bound::Infinite;
-        given_up.push(part);
+        found.push((part, std::mem::replace(side(&mut rest, part), Bound::Infinite)));
     }
     // What is given up later may settle what was given up before.
-    for part in given_up.clone().into_iter().rev() {
-        let bound = *side(&mut network.clone(), part);
+    let mut given_up: Vec<Part> = Vec::new();
+    for (part, bound) in found.into_iter().rev() {
         *side(&mut rest, part) = bound;
-        if decide(&rest, &progress)? {
-            given_up.retain(|kept| *kept != part);
-        } else {
+        if !decide(&rest, &progress)? {
             *side(&mut rest, part) = Bound::Infinite;
+            given_up.push(part);
         }
     }
     given_up.sort_unstable();

@@ -6,6 +6,7 @@ mod oracle;
 
 use kirk_network::left::{Seen, can_be_kept, given_up, left, promise_left};
 use kirk_network::merge::merge;
+use kirk_network::promise::Promise;
 use kirk_network::{Bound, Duration, EventId, Network, Part, Requirement, Time};
 use oracle::game::reach::Middle;
 use oracle::random::{self, Random, Shape};
@@ -113,8 +114,8 @@ fn what_is_promised_can_be_kept_and_no_more_can() {
                 format!("seed {seed}, {}: {so_far:#?}\n{}", network.label(event), random::describe(&network))
             };
             let wins = |lower, upper| middle.is_won_under(&with(&network, event, lower, upper));
-            let (by, from) =
-                promise_left(&network, &so_far, event).unwrap_or_else(|| panic!("{}", described()));
+            let Promise { by, from } =
+                promise_left(&network, &so_far, event).unwrap().unwrap_or_else(|| panic!("{}", described()));
             let (micros, step) = (|time: Time| time.as_micros(), middle.step);
             let by_holds = match by.map(micros) {
                 Some(by) => wins(None, Some(by)) && !wins(None, Some(by - step)),
@@ -142,7 +143,9 @@ fn what_is_given_up_is_needed_and_enough() {
         let ours = middle.roots[1..].iter().find(|event| so_far.events[event.index()] == Seen::ToCome);
         let Some(&event) = ours else { continue };
         // A step less than can be promised.
-        let Some((Some(by), _)) = promise_left(&network, &so_far, event) else { continue };
+        let Some(Promise { by: Some(by), .. }) = promise_left(&network, &so_far, event).unwrap() else {
+            continue;
+        };
         let network = with(&network, event, None, Some(by.as_micros() - middle.step));
         let described = || format!("seed {seed}: {so_far:#?}\n{}", random::describe(&network));
         assert!(!can_be_kept(&network, &so_far), "{}", described());

@@ -11,15 +11,11 @@ use crate::execution::{Aftermath, Lost, Side};
 pub(crate) fn aftermath(dispatcher: &Dispatcher, so_far: &SoFar, truth: &[Option<Time>]) -> Aftermath {
     let network = dispatcher.network();
     let guaranteed = can_be_kept(network, so_far);
-    let parts = if guaranteed { Vec::new() } else { given_up(network, so_far).unwrap_or_default() };
+    // Where that is too large to be computed with, nothing is sure.
+    let parts = if guaranteed { Some(Vec::new()) } else { given_up(network, so_far).ok() };
     let judge = Judge { dispatcher, so_far, truth };
-    let mut all = Aftermath {
-        guaranteed,
-        violated: Vec::new(),
-        in_doubt: Vec::new(),
-        given_up: parts.iter().filter_map(|&part| lost(network, part, None)).collect(),
-        kept: 0,
-    };
+    let mut all =
+        Aftermath { guaranteed, violated: Vec::new(), in_doubt: Vec::new(), given_up: Vec::new(), kept: 0 };
     for index in 0..network.requirements().len() {
         for part in [Part::RequirementLower(index), Part::RequirementUpper(index)] {
             // An infinite bound is none.
@@ -32,7 +28,7 @@ pub(crate) fn aftermath(dispatcher: &Dispatcher, so_far: &SoFar, truth: &[Option
                         all.violated.extend(lost(network, part, Some(nearest)));
                     }
                 }
-                _ if parts.contains(&part) => {}
+                _ if parts.as_ref().is_none_or(|parts| parts.contains(&part)) => all.given_up.push(at_first),
                 _ => all.kept += 1,
             }
         }

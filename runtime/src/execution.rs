@@ -61,7 +61,7 @@ pub struct Lost {
     pub bound: Side,
     /// Its value.
     pub value: Duration,
-    /// How long it was from one to the other, as far as that is known: what is nearest to the bound.
+    /// How long it was from one to the other, as far as that is known: of what is broken at best, of what is in doubt at worst.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub found: Option<Duration>,
 }

@@ -348,6 +348,11 @@ impl Executive {
         open.map(|order| (order.event, order.course.due)).collect()
     }
 
+    /// News that waits until nothing that it follows is in flight, and when it came.
+    pub(crate) fn held(&self) -> &[(Time, EventId)] {
+        &self.held
+    }
+
     /// What will be done next if nothing is heard: when, with which event, and how.
     pub fn upcoming(&mut self) -> Option<(Time, EventId, How)> {
         if self.over { None } else { self.dispatcher.upcoming() }

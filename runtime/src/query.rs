@@ -9,12 +9,14 @@ use std::collections::BinaryHeap;
 use std::sync::Arc;
 
 use kirk_network::left::{Left, Seen, SoFar, left, promise_left};
+use kirk_network::promise::Promise;
 use kirk_network::{Bound, Duration, EventId, Interval, Network, Time};
 
 use crate::aftermath::aftermath;
 use crate::cause::Cause;
 use crate::dispatcher::{Adoption, Dispatcher, Reception, Settings, Strategy};
 use crate::execution::{Aftermath, Execution, Failure, How, Outcome, Row};
+use crate::input::Input;
 use crate::journal::{BadJournal, Journal};
 use crate::knowledge::{Fixed, Knowledge, heard_against, heard_now};
 use crate::plan::Plan;
@@ -99,13 +101,18 @@ impl Situation {
             let later = journal.lines.iter().position(|line| line.at > until);
             journal.lines.truncate(later.unwrap_or(journal.lines.len()));
         }
-        let Replay { executive, at, .. } = recover(&journal)?;
+        let Replay { mut executive, at, .. } = recover(&journal)?;
+        // What is still being planned is planned now: without, nobody knows whether the rest can be kept.
+        while let Some(rebuild) = executive.poll_rebuild(at) {
+            executive.handle(at, Input::rebuilt(rebuild.run()));
+        }
         let ended = match executive.failure() {
             Some(failure) => Some(Ended::Failed(failure.clone())),
             None => executive.is_over().then_some(Ended::Completed),
         };
         let (dispatcher, begun) = (executive.dispatcher().clone(), executive.begun());
         let mut situation = Situation { dispatcher, now: at, begun, ended };
+        situation.hear_held(executive.held());
         if let Some(until) = until {
             situation.pass(until);
         }
@@ -123,10 +130,14 @@ impl Situation {
         let settings = Settings::of(Strategy::Optimistic);
         let restored = Dispatcher::restored(network, settings.clone(), knowledge.clone(), 0, now);
         let mut ended = restored.is_none().then_some(Ended::NoPlan);
-        if let (None, Some(failure)) = (until, &execution.failure)
-            && execution.outcome == Outcome::Failed
-        {
-            ended = Some(Ended::Failed(failure.clone()));
+        match (execution.outcome, &execution.failure) {
+            (Outcome::Failed, Some(failure)) if until.is_none_or(|until| until >= failure.time) => {
+                ended = Some(Ended::Failed(failure.clone()));
+            }
+            (Outcome::Completed, _) if until.is_none_or(|until| until >= execution.makespan) => {
+                ended = Some(Ended::Completed);
+            }
+            _ => {}
         }
         let dispatcher = restored.unwrap_or_else(|| Dispatcher::knowing(plan.clone(), settings, knowledge));
         let mut situation = Situation { dispatcher, now, begun: Vec::new(), ended };
@@ -190,9 +201,10 @@ impl Situation {
         matches!(self.ended, None | Some(Ended::Completed))
     }
 
-    /// What can be promised of the time of an event of ours that is to come: by when it happens, and not before when.
-    pub fn promise(&self, event: EventId) -> Option<(Option<Time>, Option<Time>)> {
-        promise_left(self.network(), &self.so_far(), event)
+    /// What can be promised of the time of an event of ours that is to come.
+    pub fn promise(&self, event: EventId) -> Option<Promise> {
+        // Too large to be computed with is no promise.
+        promise_left(self.network(), &self.so_far(), event).ok().flatten()
     }
 
     /// When news of an event of Nature's can come that has begun and was not heard of: from when on, and if there is such a time until
@@ -249,6 +261,28 @@ impl Situation {
         confirm(&mut self.dispatcher, self.now);
         self.begun.clear();
         self.now = at;
+        self.take(event, at)
+    }
+
+    /// Takes the news that an executive holds until the driver has confirmed what was in flight when it came: that it came says
+    /// that this was executed, when it was due.
+    fn hear_held(&mut self, held: &[(Time, EventId)]) {
+        if held.is_empty() || self.ended.is_some() {
+            return;
+        }
+        for (event, since) in std::mem::take(&mut self.begun) {
+            self.dispatcher.handle_executed(self.now, event, since);
+        }
+        for &(arrived, event) in held {
+            if self.ended.is_none() {
+                // What it is of the model is told by what can be kept.
+                let _ = self.take(event, arrived);
+            }
+        }
+    }
+
+    /// News of an event that arrived by now, with nothing in flight.
+    fn take(&mut self, event: EventId, at: Time) -> Result<Heard, Unheard> {
         match self.dispatcher.handle_observation(at, event) {
             Reception::Impossible { earliest: None, .. } => {
                 Err(Unheard::NotBegun { start: self.dispatcher.root(event) })
@@ -316,7 +350,10 @@ fn early(mut dispatcher: Dispatcher, so_far: &SoFar) -> Vec<Option<Time>> {
     loop {
         while let Some(&Reverse((time, event))) = news.peek().filter(|Reverse((time, _))| *time <= now) {
             news.pop();
-            dispatcher.handle_observation(time, event);
+            if let Reception::Impossible { .. } = dispatcher.handle_observation(time, event) {
+                // The least of each does not go together here: it shows nothing.
+                return vec![None; truth.len()];
+            }
             plan_anew(&mut dispatcher, time);
         }
         dispatcher.handle_timeout(now);
@@ -455,25 +492,41 @@ fn recorded(network: &Arc<Network>, execution: &Execution, now: Time) -> Result<
 
 /// Records leave out what nobody wrote. Such an event of ours happens when it can: when all that is to come before it has.
 fn fix_unrecorded(network: &Network, knowledge: &mut Knowledge, now: Time) {
+    // What each event comes after, and by how much: `to - from <= weight`, and that is negative, or zero for what follows at once.
+    let mut after: Vec<Vec<(EventId, Duration)>> = vec![Vec::new(); network.events().len()];
+    for (from, to, weight) in network.requirements().iter().flat_map(|it| it.edges()).flatten() {
+        if weight <= Duration::ZERO && from != to {
+            after[from.index()].push((to, weight));
+        }
+    }
+    let unwritten = |event: &EventId| {
+        network.events()[event.index()].names.iter().all(|name| name.internal)
+            && network.link_of(*event).is_none()
+            && knowledge.of(*event).fixed.is_none()
+    };
+    let mut open: Vec<EventId> = network.event_ids().filter(unwritten).collect();
     loop {
-        let happened = knowledge.all_happened(network);
-        let due = |event: EventId| {
-            let mut time = Time::ZERO;
-            for (from, to, weight) in network.requirements().iter().flat_map(|it| it.edges()).flatten() {
-                // It comes after `to`: `to - from <= weight`, and that is negative, or zero for what follows at once.
-                if from == event && weight <= Duration::ZERO && to != event {
-                    time = time.max(happened[to.index()]?.latest.saturating_sub(weight));
-                }
+        // Nature's events may follow from what was fixed in the round before.
+        let mut happened = knowledge.all_happened(network);
+        let before = open.len();
+        open.retain(|&event| {
+            let comes_after = after[event.index()]
+                .iter()
+                .map(|&(to, weight)| Some(happened[to.index()]?.latest.saturating_sub(weight)));
+            let Some(time) = comes_after
+                .chain([Some(Time::ZERO)])
+                .try_fold(Time::ZERO, |last, time| Some(last.max(time?)))
+            else {
+                return true;
+            };
+            if time <= now {
+                knowledge.fix(event, time, How::Dispatched);
+                happened[event.index()] = Some(Interval::at(time));
             }
-            Some(time).filter(|time| *time <= now)
-        };
-        let unwritten = |event: &EventId| {
-            network.events()[event.index()].names.iter().all(|name| name.internal)
-                && network.link_of(*event).is_none()
-                && knowledge.of(*event).fixed.is_none()
-        };
-        let found = network.event_ids().filter(unwritten).find_map(|event| Some((event, due(event)?)));
-        let Some((event, time)) = found else { return };
-        knowledge.fix(event, time, How::Dispatched);
+            time > now
+        });
+        if open.len() == before {
+            return;
+        }
     }
 }

@@ -218,7 +218,7 @@ fn what_if_something_is_heard_is_what_a_rehearsal_does() {
         }
     }
     assert!(
-        possible * 20 > cases(1_200) && beyond * 20 > cases(1_200),
+        possible * 25 > cases(1_200) && beyond * 25 > cases(1_200),
         "{possible} possible, {beyond} beyond"
     );
 }

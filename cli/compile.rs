@@ -2,7 +2,7 @@
 
 use std::io;
 
-use kirk_compiler::{Severity, to_sexpr};
+use kirk_compiler::{Severity, Span, to_sexpr};
 use kirk_network::dispatchable::dispatchable;
 use kirk_network::merge::merge;
 use kirk_network::precedence::Precedence;
@@ -14,9 +14,10 @@ use crate::args::{Common, Compile, Stage, StageFormat};
 use crate::foreign::visible;
 use crate::input::{Input, load_all};
 use crate::json::line;
-use crate::judge::{judge, too_large};
+use crate::judge::judge;
 use crate::output::{Status, complain, deliver};
 use crate::report::Reporter;
+use crate::wording::Problem;
 
 pub(crate) fn compile(arguments: &Compile, common: &Common) -> io::Result<Status> {
     let mut input = load_all(&arguments.files, &arguments.selection);
@@ -60,7 +61,7 @@ fn emit(arguments: &Compile, input: &mut Input) -> Result<String, Refusal> {
     let reduction = match reduce(&merged) {
         Ok(reduction) => reduction,
         Err(ReduceError::TooLarge) => {
-            input.diagnostics.push(too_large());
+            input.diagnostics.push(Problem::TooLarge.at(Span::default()));
             return Err(Refusal::Input);
         }
         Err(ReduceError::Never(_)) => {
@@ -78,7 +79,7 @@ fn emit(arguments: &Compile, input: &mut Input) -> Result<String, Refusal> {
             return Err(Refusal::NotControllable);
         }
         Err(_) => {
-            input.diagnostics.push(too_large());
+            input.diagnostics.push(Problem::TooLarge.at(Span::default()));
             return Err(Refusal::Input);
         }
     };

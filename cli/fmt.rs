@@ -2,13 +2,14 @@
 
 use std::io;
 
-use kirk_compiler::{Code, Diagnostic, Source, Span, format};
+use kirk_compiler::{Diagnostic, Source, Span, format};
 
 use crate::args::{Common, Fmt};
 use crate::input::{Unreadable, is_network, text};
 use crate::output::{Status, print, print_line};
 use crate::replace::replace;
 use crate::report::Reporter;
+use crate::wording::Problem;
 
 pub(crate) fn fmt(arguments: &Fmt, common: &Common) -> io::Result<Status> {
     let mut worst = Status::Yes;
@@ -33,8 +34,7 @@ fn fmt_one(file: &str, check: bool, common: &Common) -> io::Result<Status> {
         }
     };
     if is_network(file, &before) {
-        let message = format!("`{name}` is a network, and no program to lay out");
-        return refuse("", &[Diagnostic::error(Code::CannotRead, Span::default(), message)]);
+        return refuse("", &[Problem::NetworkToLayOut(name).at(Span::default())]);
     }
     let after = match format(&before) {
         Ok(after) => after,
@@ -50,8 +50,7 @@ fn fmt_one(file: &str, check: bool, common: &Common) -> io::Result<Status> {
         (false, _) if after == before => {}
         (false, _) => {
             if let Err(error) = replace(file, &after) {
-                let message = format!("cannot write `{file}`, which is as it was: {error}");
-                return refuse("", &[Diagnostic::error(Code::CannotRead, Span::default(), message)]);
+                return refuse("", &[Problem::NotWritten(file, error).at(Span::default())]);
             }
         }
     }

@@ -5,12 +5,13 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use kirk_compiler::{
-    Code, Companion, Compilation, Diagnostic, Options, Origins, Source, Span, companions, compile,
+    Companion, Compilation, Diagnostic, Options, Origins, Source, Span, companions, compile,
 };
 use kirk_network::json::ReadProblem;
 use kirk_network::{Network, SourceMap, graphml, json, kinds, plain};
 
 use crate::args::Selection;
+use crate::wording::Problem;
 
 /// Everything that became of one input file, or of several that are one program.
 pub(crate) struct Input {
@@ -121,9 +122,8 @@ pub(crate) fn load_begun(files: &[String], mut first: Option<Bytes>, selection: 
     let mut diagnostics = Vec::new();
     for (index, file) in files.iter().enumerate() {
         let place = Span::new(index as u32, 0, 0);
-        let problem = |message| Diagnostic::error(Code::CannotRead, place, message);
         let text = if files[..index].contains(file) {
-            Err(Unreadable::at_all(problem(format!("`{}` is given twice", shown(file)))))
+            Err(Unreadable::at_all(Problem::Twice(shown(file))))
         } else {
             text_of(file, bytes(file))
         };
@@ -137,10 +137,7 @@ pub(crate) fn load_begun(files: &[String], mut first: Option<Bytes>, selection: 
             }
         };
         if whole && is_network(file, &text) {
-            let message = format!("`{}` is a network and cannot be part of a program", shown(file));
-            diagnostics.push(
-                problem(message).help("Several files are compiled as one program. Give a network alone."),
-            );
+            diagnostics.push(Problem::NetworkInProgram(shown(file)).at(place));
         }
         sources.push(Source::new(shown(file), text));
     }
@@ -166,23 +163,20 @@ pub(crate) struct Unreadable {
 
 impl Unreadable {
     /// There is nothing to show.
-    fn at_all(diagnostic: Diagnostic) -> Box<Unreadable> {
-        Box::new(Unreadable { text: String::new(), diagnostic })
+    fn at_all(problem: Problem<'_>) -> Box<Unreadable> {
+        Box::new(Unreadable { text: String::new(), diagnostic: problem.at(Span::default()) })
     }
 
     /// There are bytes in it, at a place, that are no UTF-8.
     fn bytes(bytes: &[u8], valid: usize) -> Box<Unreadable> {
         let line = bytes[..valid].iter().filter(|&&b| b == b'\n').count();
-        let message = format!("this is not UTF-8 text (line {}, byte {valid})", line + 1);
         // The rest of the line, if it is one.
         let rest = bytes[valid..].iter().take(MOST_SHOWN).position(|&byte| byte == b'\n');
         let end = (valid + rest.unwrap_or(MOST_SHOWN)).min(bytes.len());
         let text = String::from_utf8_lossy(&bytes[..end]).into_owned();
         // What is wrong was replaced by one character.
         let span = Span::new(0, valid, valid + char::REPLACEMENT_CHARACTER.len_utf8());
-        let diagnostic = Diagnostic::error(Code::NotText, span, message).help(
-            "kirk reads RMPL and networks as text; is this the right file, or a compiled or compressed one?",
-        );
+        let diagnostic = Problem::NotText { line: line + 1, byte: valid }.at(span);
         Box::new(Unreadable { text, diagnostic })
     }
 }
@@ -205,16 +199,13 @@ fn bytes_of(file: &str) -> Bytes {
 }
 
 fn text_of(file: &str, bytes: Bytes) -> Result<String, Box<Unreadable>> {
-    let start = Span::default();
     let bytes = bytes
         .and_then(|bytes| at_most(file, bytes, LARGEST_NETWORK))
-        .map_err(|message| Unreadable::at_all(Diagnostic::error(Code::CannotRead, start, message)))?;
+        .map_err(|message| Unreadable::at_all(Problem::Unreadable(message)))?;
     let text = String::from_utf8(bytes)
         .map_err(|error| Unreadable::bytes(error.as_bytes(), error.utf8_error().valid_up_to()))?;
     if text.len() as u64 > LARGEST_PROGRAM && !is_network(file, &text) {
-        let message =
-            format!("this file has {} bytes; kirk reads programs of up to {LARGEST_PROGRAM}", text.len());
-        return Err(Unreadable::at_all(Diagnostic::error(Code::TooLong, start, message)));
+        return Err(Unreadable::at_all(Problem::TooLong(text.len())));
     }
     Ok(text)
 }
@@ -313,8 +304,7 @@ fn network(name: &str, text: String, reader: Reader) -> Input {
         }
         Err(problems) => {
             let told = |problem: ReadProblem| {
-                let span = Span::new(0, problem.offset, problem.offset);
-                Diagnostic::error(Code::BadNetwork, span, problem.message)
+                Problem::BadNetwork(problem.message).at(Span::new(0, problem.offset, problem.offset))
             };
             let diagnostics = problems.into_iter().map(told).collect();
             Input { sources, diagnostics, content: Content::Unread, network: None }
@@ -334,9 +324,7 @@ fn named(network: Network, file: &str) -> Network {
 impl Input {
     /// Standard input, which was read already.
     pub(crate) fn twice() -> Input {
-        let message = "standard input is given twice, and can be read only once";
-        let diagnostic = Diagnostic::error(Code::CannotRead, Span::default(), message);
-        Input::broken(shown("-"), *Unreadable::at_all(diagnostic))
+        Input::broken(shown("-"), *Unreadable::at_all(Problem::StandardInputTwice))
     }
 
     fn broken(name: &str, Unreadable { text, diagnostic }: Unreadable) -> Input {
@@ -391,12 +379,7 @@ impl Input {
     fn refuse(&mut self, selection: &Selection) {
         for (option, value) in [("--package", &selection.package), ("--entry", &selection.entry)] {
             let Some(value) = value else { continue };
-            let message =
-                format!("`{option} {value}` chooses among the programs of a source, and this is a network");
-            self.diagnostics.push(
-                Diagnostic::error(Code::NoPrograms, Span::default(), message)
-                    .help(format!("A network is checked and executed as a whole: leave `{option}` out.")),
-            );
+            self.diagnostics.push(Problem::NoPrograms { option, value }.at(Span::default()));
             self.network = None;
         }
     }

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use kirk_compiler::{Code, Diagnostic, Span, Told};
+use kirk_compiler::{Span, Told};
 use kirk_network::assume::{Assumed, Assumption, check_assuming};
 use kirk_network::merge::merge;
 use kirk_network::stnu::TooLarge;
@@ -13,6 +13,7 @@ use crate::args::Delays;
 use crate::conflict::{ConflictJson, MemberJson, members, told};
 use crate::input::Input;
 use crate::report::{DiagnosticJson, Reporter};
+use crate::wording::Problem;
 
 /// The verdict on a network and how long it took.
 pub(crate) struct Judged {
@@ -45,7 +46,7 @@ pub(crate) fn judge_assuming(input: &mut Input, delays: Delays, theory: bool) ->
         Ok((Verdict::Controllable, assumed)) => (None, assumed),
         Ok((Verdict::Uncontrollable(conflict), assumed)) => (Some(conflict), assumed),
         Err(TooLarge) => {
-            input.diagnostics.push(too_large());
+            input.diagnostics.push(Problem::TooLarge.at(Span::default()));
             return None;
         }
     };
@@ -99,10 +100,6 @@ impl Delays {
             Delays::Elongated => " if durations and delays are one uncertainty",
         }
     }
-}
-
-pub(crate) fn too_large() -> Diagnostic {
-    Diagnostic::error(Code::NumbersTooLarge, Span::default(), TooLarge.to_string())
 }
 
 /// `kirk-check/1`.

@@ -33,6 +33,7 @@ mod timetable;
 mod verify;
 mod watch;
 mod why;
+mod wording;
 
 use std::process::ExitCode;
 

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use kirk_compiler::{Code, Diagnostic, Source, Span};
+use kirk_compiler::{Diagnostic, Source, Span};
 use kirk_network::json::{ReadProblem, parse};
 use kirk_network::{Duration, EventId, Network, Time};
 use kirk_runtime::Impossible;
@@ -10,6 +10,7 @@ use serde::Deserialize;
 use serde::de::{Deserializer, MapAccess, Visitor};
 
 use crate::input::{read, without_mark};
+use crate::wording::Problem;
 
 /// The observations given, and what is wrong with them. Each option is a source of its own to point into.
 pub(crate) struct Observations {
@@ -54,18 +55,12 @@ impl Observations {
         let source = self.sources.len() as u32;
         self.sources.push(Source::new(self.option, option));
         let whole = Span::new(source, 0, option.len());
-        let Some(at) = option.rfind('@') else {
-            let message = "an observation is written EVENT@T, such as `drive:end@17.5`";
-            self.diagnostics.push(Diagnostic::error(Code::BadObservation, whole, message));
-            return;
-        };
+        let Some(at) = option.rfind('@') else { return self.wrong(Problem::NoTime, whole) };
         match Duration::parse_seconds(&option[at + 1..]) {
             Ok(time) => self.add(&option[..at], time, Span::new(source, 0, at), network),
             Err(error) => {
                 let span = Span::new(source, at + 1, option.len());
-                let message = format!("`{}`: {error}", &option[at + 1..]);
-                let help = "an observation is written EVENT@T, with T in seconds after the start";
-                self.diagnostics.push(Diagnostic::error(Code::BadObservation, span, message).help(help));
+                self.wrong(Problem::BadTime(&option[at + 1..], error), span);
             }
         }
     }
@@ -76,8 +71,7 @@ impl Observations {
             Ok(bytes) => bytes,
             Err(message) => {
                 self.sources.push(Source::new(file, ""));
-                self.diagnostics.push(Diagnostic::error(Code::CannotRead, Span::new(source, 0, 0), message));
-                return;
+                return self.wrong(Problem::Unreadable(message), Span::new(source, 0, 0));
             }
         };
         let text = without_mark(&String::from_utf8_lossy(&bytes)).to_string();
@@ -91,97 +85,51 @@ impl Observations {
                 }
             }
             Err(ReadProblem { offset, message }) => {
-                let span = Span::new(source, offset, offset);
-                let help =
-                    "the file is a JSON object of event: time in seconds, such as {\"drive:end\": 17.5}";
-                self.diagnostics.push(Diagnostic::error(Code::BadObservation, span, message).help(help));
+                self.wrong(Problem::BadObservations(message), Span::new(source, offset, offset));
             }
         }
     }
 
     fn add(&mut self, name: &str, time: Duration, span: Span, network: &Network) {
-        let problem = match network.find(name) {
-            None => {
-                let names = network.event_ids().filter(|&event| network.link_of(event).is_some());
-                let known: Vec<String> = names
-                    .flat_map(|event| network.events()[event.index()].names.iter())
-                    .filter(|name| !name.internal)
-                    .map(|name| name.text.clone())
-                    .collect();
-                let near = kirk_compiler::nearest(name, known.iter().map(String::as_str));
-                let near = near.map(|near| format!("did you mean `{near}`?"));
-                let list = match known.as_slice() {
-                    [] => "nothing in this mission is Nature's; there is nothing to observe".to_string(),
-                    known if known.len() <= 12 => format!("what can be observed: {}", known.join(", ")),
-                    known => format!(
-                        "what can be observed: {} and {} more",
-                        known[..10].join(", "),
-                        known.len() - 10
-                    ),
-                };
-                Some((format!("there is no event `{name}`"), near.unwrap_or(list)))
-            }
-            Some(event) if network.link_of(event).is_none() => Some((
-                format!("`{name}` is not Nature's to decide: kirk dispatches it"),
-                "only the ends of contingent durations are observed".to_string(),
-            )),
-            Some(_) if time < Duration::ZERO => Some((
-                format!("`{name}` cannot be heard before the mission starts"),
-                "times are seconds after the start".to_string(),
-            )),
-            Some(event) => match self.by_event.iter().find(|heard| heard.event == event) {
-                // Another name of a merged event may say the same again.
-                Some(known) if known.time.since_origin() == time => None,
-                Some(known) => Some((
-                    format!("`{name}` is observed twice"),
-                    match known.name.eq_ignore_ascii_case(name) {
-                        true => "news of an event arrives once".to_string(),
-                        false => format!(
-                            "`{}` and `{name}` are names of one event, and news of an event arrives once",
-                            known.name
-                        ),
-                    },
-                )),
-                None => {
-                    let time = Time::after_origin(time);
-                    self.by_event.push(Heard { event, name: name.to_string(), time, span });
-                    None
-                }
-            },
+        let Some(event) = network.find(name) else {
+            let names = network.event_ids().filter(|&event| network.link_of(event).is_some());
+            let known: Vec<String> = names
+                .flat_map(|event| network.events()[event.index()].names.iter())
+                .filter(|name| !name.internal)
+                .map(|name| name.text.clone())
+                .collect();
+            let near = kirk_compiler::nearest(name, known.iter().map(String::as_str));
+            return self.wrong(Problem::UnknownEvent { name, known: &known, near }, span);
         };
-        if let Some((message, help)) = problem {
-            self.diagnostics.push(Diagnostic::error(Code::BadObservation, span, message).help(help));
+        if network.link_of(event).is_none() {
+            return self.wrong(Problem::NotNatures(name), span);
         }
+        if time < Duration::ZERO {
+            return self.wrong(Problem::BeforeStart(name), span);
+        }
+        match self.by_event.iter().find(|heard| heard.event == event) {
+            // Another name of a merged event may say the same again.
+            Some(known) if known.time.since_origin() == time => {}
+            Some(known) => {
+                let problem = Problem::HeardTwice { name, other: &known.name }.at(span);
+                self.diagnostics.push(problem);
+            }
+            None => {
+                let time = Time::after_origin(time);
+                self.by_event.push(Heard { event, name: name.to_string(), time, span });
+            }
+        }
+    }
+
+    fn wrong(&mut self, problem: Problem<'_>, span: Span) {
+        self.diagnostics.push(problem.at(span));
     }
 
     /// What is wrong with news that cannot come then.
     pub(crate) fn impossible(&self, impossible: &Impossible, network: &Network, what_if: bool) -> Diagnostic {
-        let Impossible { event, time, earliest, latest } = impossible;
-        let name = network.label(*event);
-        let span = self
-            .by_event
-            .iter()
-            .find(|heard| heard.event == *event)
-            .map_or(Span::default(), |heard| heard.span);
-        let message = match latest {
-            _ if time < earliest => {
-                format!("news of `{name}` at {time} s is too early: it cannot arrive before {earliest} s")
-            }
-            Some(latest) if time > latest => {
-                format!("news of `{name}` at {time} s is too late: it cannot arrive after {latest} s")
-            }
-            _ => format!("news of `{name}` at {time} s contradicts the other observations"),
-        };
-        let window = match latest {
-            Some(latest) => format!("from {earliest} to {latest} s"),
-            None => format!("from {earliest} s on"),
-        };
-        let rehearse = match what_if {
-            true => "what has not begun cannot be heard of, whatever the model says",
-            false => "`--what-if` rehearses what becomes of the mission if it comes all the same",
-        };
-        Diagnostic::error(Code::ImpossibleObservation, span, message)
-            .help(format!("given what was dispatched, the model allows this news {window}; {rehearse}"))
+        let heard = self.by_event.iter().find(|heard| heard.event == impossible.event);
+        let span = heard.map_or(Span::default(), |heard| heard.span);
+        Problem::Impossible { name: network.label(impossible.event), impossible, what_if }.at(span)
     }
 }
 

@@ -5,7 +5,7 @@ use std::io;
 
 use kirk_compiler::nearest::nearest;
 use kirk_compiler::repair::{Changed, Preference, Proposal, Proposals, Wishes, names, proposals};
-use kirk_compiler::{Edit, Source, Text};
+use kirk_compiler::{Edit, Source, Span, Text};
 use kirk_network::stnu::TooLarge;
 use kirk_network::{Duration, Verdict, check};
 use serde::Serialize;
@@ -16,10 +16,10 @@ use crate::conflict::{ChangedJson, SpotJson};
 use crate::foreign::one_line;
 use crate::input::{Input, load_all, without_mark};
 use crate::json::line;
-use crate::judge::too_large;
 use crate::output::{Status, complain, print, print_line, remark};
 use crate::replace::Replacement;
 use crate::report::Reporter;
+use crate::wording::Problem;
 
 pub(crate) fn repair_of(arguments: &RepairOf, common: &Common) -> io::Result<Status> {
     let mut input = load_all(&arguments.files, &arguments.selection);
@@ -43,7 +43,7 @@ pub(crate) fn repair_of(arguments: &RepairOf, common: &Common) -> io::Result<Sta
     let mut found = match found {
         Ok(found) => found,
         Err(TooLarge) => {
-            input.diagnostics.push(too_large());
+            input.diagnostics.push(Problem::TooLarge.at(Span::default()));
             Reporter::new(&input.sources).show(&input.diagnostics, common)?;
             return Ok(Status::Wrong);
         }

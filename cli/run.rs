@@ -2,7 +2,7 @@
 
 use std::io;
 
-use kirk_compiler::{Diagnostic, Severity};
+use kirk_compiler::{Diagnostic, Severity, Span};
 use kirk_network::Time;
 use kirk_network::assume::Assumption;
 use kirk_runtime::execution::FORMAT;
@@ -15,11 +15,11 @@ use crate::conflict;
 use crate::execute::{self, Show};
 use crate::input::{Input, load_all};
 use crate::json::line;
-use crate::judge::too_large;
 use crate::news::treatment;
 use crate::observations::Observations;
 use crate::output::{Status, complain, eprint, print};
 use crate::report::Reporter;
+use crate::wording::Problem;
 
 pub(crate) fn run(arguments: &Run, common: &Common) -> io::Result<Status> {
     if arguments.why && arguments.format == TextOrJson::Json {
@@ -98,7 +98,7 @@ pub(crate) fn plan_of(input: &mut Input) -> Option<Result<Plan, Unproven>> {
     match Plan::new(network) {
         Ok(plan) => Some(Ok(plan)),
         Err(NoPlan::TooLarge) => {
-            input.diagnostics.push(too_large());
+            input.diagnostics.push(Problem::TooLarge.at(Span::default()));
             None
         }
         Err(NoPlan::Uncontrollable(conflict)) => {

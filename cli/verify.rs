@@ -2,7 +2,7 @@
 
 use std::io;
 
-use kirk_compiler::{Code, Diagnostic, Source, Span};
+use kirk_compiler::{Diagnostic, Source, Span};
 use kirk_network::json::{ReadProblem, parse};
 use kirk_runtime::execution::FORMAT;
 use kirk_runtime::journal::{self, is_journal};
@@ -14,6 +14,7 @@ use crate::input::{Bytes, at_most, load_all, read, shown, without_mark};
 use crate::json::line;
 use crate::output::{Status, complain, print, print_line};
 use crate::report::Reporter;
+use crate::wording::Problem;
 
 /// Records are written by machines.
 const LARGEST_RECORD: u64 = 256 << 20;
@@ -88,36 +89,26 @@ pub(crate) fn read_execution(file: &str) -> Result<Execution, Box<(Source, Diagn
 
 /// The same where the file was read already.
 pub(crate) fn execution_of(file: &str, bytes: Bytes) -> Result<Execution, Box<(Source, Diagnostic)>> {
-    let bytes = bytes.and_then(|bytes| at_most(file, bytes, LARGEST_RECORD)).map_err(|message| {
-        Box::new((
-            Source::new(shown(file), ""),
-            Diagnostic::error(Code::CannotRead, Span::default(), message),
-        ))
-    })?;
+    let wrong = |text: &str, problem: Problem<'_>, at: usize| {
+        Box::new((Source::new(shown(file), text), problem.at(Span::new(0, at, at))))
+    };
+    let bytes = bytes
+        .and_then(|bytes| at_most(file, bytes, LARGEST_RECORD))
+        .map_err(|message| wrong("", Problem::Unreadable(message), 0))?;
     if is_journal(&bytes) {
-        return journal::read(&bytes).and_then(|journal| replay(&journal, |_, _, _| {})).map_or_else(
-            |bad| {
-                let message = format!("this journal cannot be repeated: {bad}");
-                let diagnostic = Diagnostic::error(Code::BadRecord, Span::default(), message);
-                Err(Box::new((Source::new(shown(file), ""), diagnostic)))
-            },
-            |replayed| Ok(replayed.executive.execution(replayed.at, false)),
-        );
+        return journal::read(&bytes)
+            .and_then(|journal| replay(&journal, |_, _, _| {}))
+            .map(|replayed| replayed.executive.execution(replayed.at, false))
+            .map_err(|bad| wrong("", Problem::BadJournal(bad.to_string()), 0));
     }
     let text = without_mark(&String::from_utf8_lossy(&bytes)).to_string();
-    let read = parse::<Execution>(&text);
-    if let Ok(execution) = &read
-        && execution.format != FORMAT
-    {
-        let message = format!("the format is `{}`; this kirk reads `{FORMAT}`", execution.format);
-        let diagnostic = Diagnostic::error(Code::BadRecord, Span::new(0, 0, 0), message);
-        return Err(Box::new((Source::new(shown(file), text.as_str()), diagnostic)));
+    match parse::<Execution>(&text) {
+        Ok(execution) if execution.format != FORMAT => {
+            Err(wrong(&text, Problem::OtherFormat(&execution.format), 0))
+        }
+        Ok(execution) => Ok(execution),
+        Err(ReadProblem { offset, message }) => Err(wrong(&text, Problem::BadRecord(message), offset)),
     }
-    read.map_err(|ReadProblem { offset, message }| {
-        let diagnostic = Diagnostic::error(Code::BadRecord, Span::new(0, offset, offset), message)
-            .help("kirk run --format json writes such a record");
-        Box::new((Source::new(shown(file), text.as_str()), diagnostic))
-    })
 }
 
 #[derive(Serialize)]

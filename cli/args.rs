@@ -13,7 +13,8 @@ pub(crate) use judge::{Check, CheckFormat, Compile, Delays, Stage, StageFormat, 
 pub(crate) use query::Query;
 pub(crate) use repair::{Prefer, RepairOf, SlackOf};
 pub(crate) use run::{
-    CompanionName, DriverEvents, DriverStarts, Live, Nature, Replay, Resume, Run, ScreenWhen, StrategyName,
+    CompanionName, DriverEvents, DriverStarts, Live, Nature, Replay, Resume, Run, ScreenWhen, Show,
+    StrategyName,
 };
 
 /// Compiles RMPL control programs to temporal networks with uncertainty, proves that they can always be executed (or

@@ -8,19 +8,21 @@ use kirk_compiler::episode::{Episode, Kind};
 use kirk_executive::{Driver, Ended, Http, Mission, Options, Ready, Resumption, Said, Screen, Zero, begin};
 use kirk_network::Duration;
 use kirk_runtime::{
-    Dispatcher, Execution, Outcome, Plan, Scope, handovers, leave_out_natures, merge_companions,
+    Dispatcher, Execution, Outcome, Plan, Row, Scope, handovers, leave_out_natures, merge_companions,
 };
 
 use crate::args::{
-    Common, CompanionName, DriverEvents, DriverStarts, Live, Resume, Run, ScreenWhen, StrategyName,
+    Common, CompanionName, DriverEvents, DriverStarts, Live, Resume, Run, ScreenWhen, Show, StrategyName,
     TextOrJson,
 };
 use crate::input::Input;
 use crate::json::line;
 use crate::live;
 use crate::output::{self, Status, complain, print, remark};
+use crate::replay::print_journal;
 use crate::timetable::timetable;
 use crate::watch;
+use crate::why::why;
 
 /// Executes a proven mission in real time.
 pub(crate) fn execute(arguments: &Run, common: &Common, input: &Input, plan: Plan) -> io::Result<Status> {
@@ -59,7 +61,7 @@ pub(crate) fn execute(arguments: &Run, common: &Common, input: &Input, plan: Pla
     match begin(mission, options, arguments.live.journal.as_deref(), out) {
         Ok(ready) => {
             let stdin_taken = arguments.files.iter().any(|file| file == "-");
-            finish(ready, said, screen, stdin_taken, Show::of_run(arguments), common)
+            finish(ready, said, screen, stdin_taken, arguments.show, common)
         }
         Err(message) => wrong(&message),
     }
@@ -72,7 +74,7 @@ pub(crate) fn resume(arguments: &Resume, common: &Common) -> io::Result<Status> 
             remark(&text);
         }
     };
-    let show = Show { internal: arguments.internal, format: arguments.format, why: false };
+    let show = arguments.show;
     let wanted = arguments.screen.map(screen);
     if let Some(Err(message)) = wanted.map(has_screen) {
         return wrong(&message);
@@ -88,30 +90,32 @@ pub(crate) fn resume(arguments: &Resume, common: &Common) -> io::Result<Status> 
             if !common.quiet {
                 remark("the mission is over; there is nothing to go on with");
             }
-            show.execution(&execution, None)
+            match show.why {
+                true => {
+                    print_journal(&arguments.journal, None, show, &Common { quiet: true, ..common.clone() })
+                }
+                false => show.execution(&execution, None),
+            }
         }
         Err(message) => wrong(&message),
     }
 }
 
-/// How the result is shown.
-#[derive(Clone, Copy)]
-pub(crate) struct Show {
-    pub(crate) internal: bool,
-    pub(crate) format: TextOrJson,
-    /// With what decided each time.
-    pub(crate) why: bool,
+/// The same with what decided the time of each row.
+fn with_why(execution: &Execution, dispatcher: &Dispatcher) -> Execution {
+    let because = |row: &Row| Some(why(dispatcher, row)).filter(|why| !why.is_empty());
+    let rows = execution.rows.iter().map(|row| Row { because: because(row), ..row.clone() }).collect();
+    Execution { rows, ..execution.clone() }
 }
 
 impl Show {
-    pub(crate) fn of_run(arguments: &Run) -> Show {
-        Show { internal: arguments.internal, format: arguments.format, why: arguments.why }
-    }
-
     /// Prints an execution by a dispatcher, if that is at hand, and says by the exit status how it ended.
     pub(crate) fn execution(self, execution: &Execution, by: Option<&Dispatcher>) -> io::Result<Status> {
         let text = match self.format {
-            TextOrJson::Json => line(execution)?,
+            TextOrJson::Json => match by.filter(|_| self.why) {
+                Some(dispatcher) => line(&with_why(execution, dispatcher))?,
+                None => line(execution)?,
+            },
             TextOrJson::Text => timetable(execution, by.filter(|_| self.why)),
         };
         match print(&text) {

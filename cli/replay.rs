@@ -1,13 +1,13 @@
 //! `kirk replay`: repeats a mission from its journal, bit for bit.
 
 use std::io;
+use std::path::Path;
 
 use kirk_network::Time;
 use kirk_runtime::journal::read as read_journal;
-use kirk_runtime::{Output, replay as repeat};
+use kirk_runtime::{Output, Speed, replay as repeat};
 
-use crate::args::{Common, Replay};
-use crate::execute::Show;
+use crate::args::{Common, Replay, Show};
 use crate::input::read;
 use crate::output::{Status, complain, remark};
 use crate::timetable::cells;
@@ -16,8 +16,18 @@ use crate::timetable::cells;
 pub(crate) const LARGEST_JOURNAL: u64 = 1 << 30;
 
 pub(crate) fn replay(arguments: &Replay, common: &Common) -> io::Result<Status> {
-    let file = arguments.journal.display();
-    let journal = read(&arguments.journal.to_string_lossy(), LARGEST_JOURNAL)
+    print_journal(&arguments.journal, arguments.speed, arguments.show, common)
+}
+
+/// Prints what a journal leads to, and at some speed, if one is given, what happens on the way.
+pub(crate) fn print_journal(
+    path: &Path,
+    speed: Option<Speed>,
+    show: Show,
+    common: &Common,
+) -> io::Result<Status> {
+    let file = path.display();
+    let journal = read(&path.to_string_lossy(), LARGEST_JOURNAL)
         .and_then(|bytes| read_journal(&bytes).map_err(|bad| format!("`{file}`, {bad}")));
     let journal = match journal {
         Ok(journal) => journal,
@@ -31,7 +41,7 @@ pub(crate) fn replay(arguments: &Replay, common: &Common) -> io::Result<Status> 
     }
     let mut shown_until = Time::ZERO;
     let replayed = repeat(&journal, |at, executive, output| {
-        let Some(speed) = arguments.speed else { return };
+        let Some(speed) = speed else { return };
         std::thread::sleep(speed.times(journal.start.speed).real(at.saturating_since(shown_until)));
         shown_until = shown_until.max(at);
         match output {
@@ -47,8 +57,8 @@ pub(crate) fn replay(arguments: &Replay, common: &Common) -> io::Result<Status> 
     });
     match replayed {
         Ok(replayed) => {
-            let show = Show { internal: arguments.internal, format: arguments.format, why: false };
-            show.execution(&replayed.executive.execution(replayed.at, arguments.internal), None)
+            let execution = replayed.executive.execution(replayed.at, show.internal);
+            show.execution(&execution, Some(replayed.executive.dispatcher()))
         }
         Err(bad) => {
             complain(&format!("`{file}`, {bad}"));

@@ -12,25 +12,19 @@ use kirk_runtime::{
 
 use crate::args::{Common, Nature, Run, StrategyName, TextOrJson};
 use crate::conflict;
-use crate::execute::{self, Show};
+use crate::execute;
 use crate::input::{Input, load_all};
 use crate::json::line;
 use crate::news::treatment;
 use crate::observations::Observations;
-use crate::output::{Status, complain, eprint, print};
+use crate::output::{Status, eprint, print};
 use crate::report::Reporter;
 use crate::wording::Problem;
 
 pub(crate) fn run(arguments: &Run, common: &Common) -> io::Result<Status> {
-    if arguments.why && arguments.format == TextOrJson::Json {
-        complain(
-            "`--why` adds a column to the timetable for people, and `--format json` prints none: leave out one of them",
-        );
-        return Ok(Status::Wrong);
-    }
     let mut input = load_all(&arguments.files, &arguments.selection);
     let plan = plan_of(&mut input);
-    let reported = |diagnostic: &Diagnostic| match arguments.format {
+    let reported = |diagnostic: &Diagnostic| match arguments.show.format {
         // Nothing but the execution goes to standard output, and nobody looks at notes beside JSON.
         TextOrJson::Json => diagnostic.severity == Severity::Error,
         TextOrJson::Text => true,
@@ -40,7 +34,7 @@ pub(crate) fn run(arguments: &Run, common: &Common) -> io::Result<Status> {
     let plan = match plan {
         None => return Ok(Status::Wrong),
         Some(Err(_)) => {
-            if arguments.format == TextOrJson::Json {
+            if arguments.show.format == TextOrJson::Json {
                 print(&line(&not_executed(&input.program(&arguments.selection)))?)?;
             }
             return Ok(Status::No);
@@ -75,7 +69,7 @@ pub(crate) fn run(arguments: &Run, common: &Common) -> io::Result<Status> {
         },
         seed: arguments.seed,
         observations: given.by_event.iter().map(|heard| (heard.event, heard.time)).collect(),
-        internal: arguments.internal,
+        internal: arguments.show.internal,
         what_if: arguments.what_if,
     };
     let explained = match explained(&plan, &input.program(&arguments.selection), &simulation) {
@@ -86,7 +80,7 @@ pub(crate) fn run(arguments: &Run, common: &Common) -> io::Result<Status> {
             return Ok(Status::Wrong);
         }
     };
-    Show::of_run(arguments).execution(&explained.execution, Some(&explained.dispatcher))
+    arguments.show.execution(&explained.execution, Some(&explained.dispatcher))
 }
 
 /// It cannot be promised, and why is among the diagnostics.

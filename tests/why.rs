@@ -51,8 +51,31 @@ fn a_mission_in_real_time_says_why_too() {
 }
 
 #[test]
-fn records_for_programs_do_not_say_why() {
+fn records_say_why_if_that_is_asked_for_and_are_verified_all_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = folder.path().join("record.json").display().to_string();
     let output = kirk(&["run", "examples/rmpl/robot.rmpl", "--simulate", "--why", "--format", "json"]);
-    assert_eq!((output.status.code(), stdout(&output).as_str()), (Some(2), ""));
-    assert!(stderr(&output).contains("`--why` adds a column to the timetable"), "{}", stderr(&output));
+    let document: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(document["rows"][0]["because"], "at the start");
+    std::fs::write(&record, stdout(&output)).unwrap();
+    let verified = kirk(&["verify", &record, "examples/rmpl/robot.rmpl"]);
+    assert_eq!(verified.status.code(), Some(0), "{}{}", stdout(&verified), stderr(&verified));
+    let plain = kirk(&["run", "examples/rmpl/robot.rmpl", "--simulate", "--format", "json"]);
+    assert!(!stdout(&plain).contains("because"));
+}
+
+#[test]
+fn a_journal_says_why_when_it_is_repeated_and_when_it_is_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let journal = folder.path().join("journal").display().to_string();
+    let fast = ["--quiet", "--speed", "100", "--screen", "never", "--journal", &journal];
+    let run = [&["run", "examples/rmpl/glider.rmpl", "--why"], &fast[..]].concat();
+    let (run, replayed, resumed) = (
+        kirk_with_input(&run, b""),
+        kirk(&["replay", &journal, "--why"]),
+        kirk(&["resume", &journal, "--why"]),
+    );
+    assert!(stdout(&run).contains("10 s after `move:start`"), "{}", stdout(&run));
+    assert_eq!(stdout(&replayed), stdout(&run));
+    assert_eq!(stdout(&resumed), stdout(&run), "{}", stderr(&resumed));
 }

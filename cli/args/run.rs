@@ -44,15 +44,9 @@ pub(crate) struct Run {
     /// The same as --strategy optimistic, which is the default.
     #[arg(long, conflicts_with = "strategy")]
     pub(crate) optimistic: bool,
-    /// Also print the events that no user wrote.
-    #[arg(long)]
-    pub(crate) internal: bool,
-    /// Also print what decided the time of each event: another event, its news or the lack of it, an order.
-    #[arg(long)]
-    pub(crate) why: bool,
     /// How to print the result.
-    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
-    pub(crate) format: TextOrJson,
+    #[command(flatten)]
+    pub(crate) show: Show,
     #[command(flatten)]
     pub(crate) live: Live,
 }
@@ -248,9 +242,20 @@ pub(crate) struct Resume {
     /// Whether the mission is shown on a screen of the terminal, or by lines [default: as it was begun].
     #[arg(long, value_enum, value_name = "WHEN")]
     pub(crate) screen: Option<ScreenWhen>,
+    /// How to print the result.
+    #[command(flatten)]
+    pub(crate) show: Show,
+}
+
+/// How an execution is printed.
+#[derive(Clone, Copy, Debug, Args)]
+pub(crate) struct Show {
     /// Also print the events that no user wrote.
     #[arg(long)]
     pub(crate) internal: bool,
+    /// Also print what decided the time of each event: another event, its news or the lack of it, an order.
+    #[arg(long)]
+    pub(crate) why: bool,
     /// How to print the result.
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
     pub(crate) format: TextOrJson,
@@ -264,12 +269,9 @@ pub(crate) struct Replay {
     /// Repeat it so many times faster than it was; at once if not given.
     #[arg(long, value_name = "X", value_parser = speed)]
     pub(crate) speed: Option<Speed>,
-    /// Also print the events that no user wrote.
-    #[arg(long)]
-    pub(crate) internal: bool,
     /// How to print the result.
-    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
-    pub(crate) format: TextOrJson,
+    #[command(flatten)]
+    pub(crate) show: Show,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

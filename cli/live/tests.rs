@@ -25,7 +25,7 @@ fn moment(second: i64) -> Moment {
 
 fn row(event: &str, time: i64, how: How) -> Row {
     let time = Some(at(time));
-    Row { event: event.to_string(), time, how, observed: None, happened: None, truth: None }
+    Row { event: event.to_string(), time, how, observed: None, happened: None, truth: None, because: None }
 }
 
 fn possible(event: &str, from: i64, until: Option<i64>) -> Possible {

@@ -124,6 +124,9 @@ pub struct Row {
     /// When it really happened, if that is known (in simulations).
     #[serde(default, rename = "true", skip_serializing_if = "Option::is_none")]
     pub truth: Option<Time>,
+    /// What decided its time, for people, if that was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub because: Option<String>,
 }
 
 /// How an event came to be fixed.

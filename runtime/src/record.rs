@@ -75,6 +75,7 @@ pub(crate) fn row(
         observed: contingent.then_some(known.observed),
         happened: happened.filter(|_| contingent),
         truth,
+        because: None,
     };
     Some((place, row))
 }

@@ -22,6 +22,7 @@ fn one_of_each() -> [Happening; 5] {
         observed: Some(Some(at(2_000_000))),
         happened: None,
         truth: None,
+        because: None,
     };
     let execution = Execution {
         format: "kirk-execution/1".to_string(),

@@ -21,6 +21,7 @@ use crate::diagnostic::{Edit, Suggestion};
 use crate::origins::{Origin, OriginKind, Origins, Side};
 use crate::source::{Source, Span};
 use crate::written::{Written, written};
+use structure::Restructured;
 pub use structure::slack;
 
 /// What is wanted of a repair.
@@ -112,6 +113,9 @@ pub struct Proposals {
     pub gave_up: bool,
 }
 
+/// So many programs and verdicts at most for the amounts beside each change of the structure.
+const FEW: usize = 100;
+
 /// A bound that somebody has written, or several that are written once.
 struct Lever<'a> {
     allowed: Allowed,
@@ -158,7 +162,17 @@ pub fn proposals(
         repairs.into_iter().filter_map(|it| proposal(&it.changes)).collect()
     };
     let mut found = of_amounts(some);
-    found.extend(structure::proposals(network, origins, sources, wishes)?);
+    let amounts = |loose: &Network, limit: usize| -> Result<Vec<Repair>, TooLarge> {
+        let options = Options { limit, rounds: options.rounds.min(FEW), patience: options.patience.min(FEW) };
+        Ok(kirk_network::repair::repairs(loose, &allowed, &options)?.map_or(Vec::new(), |it| it.repairs))
+    };
+    for Restructured { mut changes, amounts } in
+        structure::found(network, origins, sources, wishes, found.len(), amounts)?
+    {
+        let amounts: Option<Vec<Changed>> = amounts.iter().map(changed).collect();
+        changes.extend(amounts.unwrap_or_default());
+        found.push(Proposal { changes });
+    }
     found.extend(of_amounts(nothing));
     found.truncate(wishes.limit);
     // What has no part in the conflicts cannot settle them, which goes without saying.
@@ -259,7 +273,7 @@ fn is_changeable(part: Part, network: &Network, origin: &Origin, sources: &[Sour
         OriginKind::Requirement | OriginKind::Link => true,
         _ => match part {
             Part::DelayMax(_) => origin.place(Side::MaxDelay) != origin.span,
-            _ => origin.place(Side::Lower) != origin.place(Side::Upper),
+            _ => origin.place(Side::Lower) != origin.place(Side::Upper) || edit::says_both(origin),
         },
     };
     is_there && by_itself && edit::is_written(part, origin, sources)

@@ -59,6 +59,16 @@ impl Share {
 }
 
 impl Part {
+    /// The contingent link it is of.
+    pub fn link(self) -> Option<usize> {
+        match self {
+            Part::LinkLower(link) | Part::LinkUpper(link) | Part::DelayMin(link) | Part::DelayMax(link) => {
+                Some(link)
+            }
+            _ => None,
+        }
+    }
+
     /// The bound itself, without sign: what the network says there. Zero for what has no bound.
     pub fn bound(self, network: &Network) -> Duration {
         let finite = |bound: Bound| bound.finite().unwrap_or_default();

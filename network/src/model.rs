@@ -206,6 +206,22 @@ impl Network {
         self.requirements.pop();
     }
 
+    /// Makes the event at the end of a link ours: the link ends in a new event, the last, which nothing else is about.
+    pub(crate) fn take_over_end(&mut self, link: usize) {
+        let ours = self.contingents[link].to;
+        let taken = |text: &str| self.events.iter().any(|event| event.names.iter().any(|it| it.text == text));
+        let mut text = format!("{}'", self.id(ours));
+        while taken(&text) {
+            text.push('\'');
+        }
+        let event = Event { names: [Name { text, internal: true }].into() };
+        let new = EventId(self.events.len() as u32);
+        self.events = self.events.iter().cloned().chain([event]).collect();
+        self.contingents[link].to = new;
+        self.link_of[ours.index()] = None;
+        self.link_of.push(Some(link as u32));
+    }
+
     /// The ids of all events, in order.
     pub fn event_ids(&self) -> impl Iterator<Item = EventId> + use<> {
         (0..self.events.len() as u32).map(EventId)

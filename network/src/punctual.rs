@@ -136,11 +136,7 @@ impl Punctuality {
 
     /// True if the share speaks of an end that may be known better, by the time of the node, than at the worst.
     fn may_be_told(&self, share: &Share, node: u32, network: &Network) -> bool {
-        let (Part::LinkLower(index) | Part::LinkUpper(index) | Part::DelayMin(index) | Part::DelayMax(index)) =
-            share.part
-        else {
-            return false;
-        };
+        let Some(index) = share.part.link() else { return false };
         let link = network.contingents()[index];
         let start = self.reduction.places[self.merged.event_of[link.from.index()].index()].node;
         let rigid = |node: u32| (self.rigid.leader[node as usize], self.rigid.offset[node as usize]);

@@ -163,7 +163,8 @@ fn with_delays_the_verdict_is_that_of_the_game() {
 fn only(network: &Network, conflict: &Conflict, left_out: Option<Part>) -> Network {
     let has = |part: Part| Some(part) != left_out && conflict.members.iter().any(|share| share.part == part);
     let requirements = network.requirements().iter().enumerate().map(|(index, requirement)| {
-        let keep = |part: Part, bound| if has(part) { bound } else { Bound::Infinite };
+        let keep =
+            |part: Part, bound| if has(part) || has(Part::Join(index)) { bound } else { Bound::Infinite };
         Requirement {
             lower: keep(Part::RequirementLower(index), requirement.lower),
             upper: keep(Part::RequirementUpper(index), requirement.upper),
@@ -203,21 +204,22 @@ fn each_of_all_conflicts_is_one_alone_and_without_their_bounds_none_is_left() {
     holds(4000, &shapes, |network, _| {
         let merged = merge(network).network;
         let found = conflicts(&merged, 1000).unwrap();
-        let possible = |network: &Network| conflict(network).unwrap().is_none();
+        let possible = |network: &Network| check(network).unwrap() == Verdict::Controllable;
         several.set(several.get() + usize::from(found.len() > 1));
-        let alone = found.iter().all(|conflict| !possible(&only(&merged, conflict, None)));
+        // With an end of Nature's out of the way, [0, 0] may join what it did not, and then a conflict says that it rests on it.
+        let alone = found.iter().all(|it| {
+            let joins = it.members.iter().any(|share| matches!(share.part, Part::Join(_)));
+            let only = only(&merged, it, None);
+            if joins { !possible(&only) } else { conflict(&only).unwrap().is_some() }
+        });
         let rest = without(&merged, &found);
-        let has_no_bounds = |conflict: &Conflict| without(&merged, [conflict]) == merged;
         let bounds: Vec<Part> =
             found.iter().flat_map(|conflict| &conflict.members).map(|it| it.part).collect();
         let is_free =
             |part: &&Part| matches!(part, Part::RequirementUpper(_)) && part.bound(&merged) != Duration::ZERO;
         let disjoint = bounds.iter().filter(is_free).count()
             == bounds.iter().filter(is_free).collect::<BTreeSet<_>>().len();
-        alone
-            && disjoint
-            && found.is_empty() == possible(&merged)
-            && (possible(&rest) || found.iter().any(has_no_bounds))
+        alone && disjoint && found.is_empty() == possible(&merged) && possible(&rest)
     });
     assert!(several.get() > 20, "{}", several.get());
 }

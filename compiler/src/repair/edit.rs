@@ -5,7 +5,8 @@ use kirk_network::vary::Change;
 use kirk_network::{Bound, Duration, Network, Part};
 
 use crate::diagnostic::{Edit, Text};
-use crate::origins::{Origin, OriginKind, Side};
+use crate::episode::Kind;
+use crate::origins::{Origin, OriginKind, Side, Subject};
 use crate::source::{Source, Span};
 use crate::words;
 
@@ -90,6 +91,12 @@ pub(super) fn is_written(part: Part, origin: &Origin, sources: &[Source]) -> boo
     }
 }
 
+/// True if one amount says both bounds, as in `(delay 5)`.
+pub(super) fn says_both(origin: &Origin) -> bool {
+    let is_delay = origin.subject == Subject::Form(Kind::Delay.word());
+    is_delay && origin.place(Side::Lower) == origin.place(Side::Upper)
+}
+
 /// The change of the source. Of a file in which amounts have no place of their own it is nothing.
 pub(super) fn edits(change: &Change, network: &Network, origin: &Origin, sources: &[Source]) -> Vec<Edit> {
     let part = change.knob.parts()[0];
@@ -135,5 +142,12 @@ fn edit(part: Part, from: Bound, to: Duration, origin: &Origin, sources: &[Sourc
         }
         _ => unit.write(to),
     };
-    Some(edit(place, text))
+    Some(edit(
+        place,
+        match part {
+            Part::RequirementLower(_) if says_both(origin) => format!("{text} {written}"),
+            Part::RequirementUpper(_) if says_both(origin) => format!("{written} {text}"),
+            _ => text,
+        },
+    ))
 }

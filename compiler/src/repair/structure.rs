@@ -1,13 +1,15 @@
 //! What helps where no amount does: slack in a form whose parts have to meet, an order less.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, VecDeque};
 
 use kirk_network::check::{Verdict, check};
 use kirk_network::least::could_settle;
+use kirk_network::repair::Repair;
 use kirk_network::stnu::TooLarge;
+use kirk_network::vary::{self, Change};
 use kirk_network::{Bound, Conflict, Duration, Network, Part, Requirement};
 
-use super::{Changed, Proposal, Wishes, is_called};
+use super::{Changed, Wishes, is_called};
 use crate::diagnostic::{Edit, Text};
 use crate::form::Form;
 use crate::origins::{Origin, OriginKind, Origins};
@@ -15,40 +17,107 @@ use crate::problem::Problems;
 use crate::read::read;
 use crate::source::{Source, Span};
 
-/// The forms of a conflict that would settle it if they had slack, and the orders that would if they were left out: slack first.
-pub(super) fn proposals(
+/// A change of the structure, and what amounts have to change beside it.
+pub(super) struct Restructured {
+    pub(super) changes: Vec<Changed>,
+    pub(super) amounts: Vec<Change>,
+}
+
+/// One loosening of what stands at a place.
+type Step = (Loosening, Span);
+
+/// So many proposals are found, if there are as many, before it is enough not to look for longer ones.
+const ENOUGH: usize = 3;
+
+/// So many networks at most are tried.
+const MOST_TRIED: usize = 32;
+
+/// The forms that would settle the conflicts if they had slack, and the orders that would if they were left out, slack first; then, if
+/// with those that are `known` there are few proposals, several of these, or with changes of amounts.
+///
+/// Breadth first: a conflict names what it may rest on, and where one of that loosened leaves another conflict, that does.
+pub(super) fn found(
     network: &Network,
     origins: &Origins,
     sources: &[Source],
     wishes: &Wishes,
-) -> Result<Vec<Proposal>, TooLarge> {
-    let Verdict::Uncontrollable(conflict) = check(network)? else { return Ok(Vec::new()) };
-    let mut found = Vec::new();
-    for (loosening, spans) in [
-        (Loosening::Slack, joins(&conflict, network, origins)),
-        (Loosening::Order, orders(&conflict, network, origins)),
-    ] {
-        for span in spans {
-            let of_form = |origin: &Origin| origin.span == span && loosening.concerns(origin.kind);
-            let kept = |origin: &Origin| wishes.keep.iter().any(|name| is_called(origin, name));
-            let Some(origin) = origins.requirements.iter().find(|it| of_form(it) && !kept(it)) else {
-                continue;
-            };
-            let loosened = loosened(network, origins, of_form);
-            let edit = loosening.edit(span, sources);
-            if let (Some(loosened), Some(edit)) = (loosened, edit)
-                && check(&loosened)? == Verdict::Controllable
-            {
-                let (title, what) = loosening.words(origin);
-                let changed = Changed { title, what, place: span, amounts: None, edits: vec![edit] };
-                found.push(Proposal { changes: vec![changed] });
+    known: usize,
+    amounts: impl Fn(&Network, usize) -> Result<Vec<Repair>, TooLarge>,
+) -> Result<Vec<Restructured>, TooLarge> {
+    let changed = |step: &Step| changed(*step, origins, sources, wishes);
+    let without = |steps: &BTreeSet<Step>, step: &Step| -> BTreeSet<Step> {
+        steps.iter().filter(|other| *other != step).copied().collect()
+    };
+    // Each is needed, with the others and the amounts as they are.
+    let is_needed = |steps: &BTreeSet<Step>, step: &Step, amounts: &[Change]| {
+        let less =
+            loosened(network, origins, &without(steps, step)).and_then(|less| vary::changed(&less, amounts));
+        less.map_or(Ok(true), |less| Ok(check(&less)? != Verdict::Controllable))
+    };
+    let mut found: Vec<Restructured> = Vec::new();
+    let mut open = VecDeque::from([BTreeSet::new()]);
+    let mut seen: BTreeSet<BTreeSet<Step>> = BTreeSet::new();
+    for _ in 0..MOST_TRIED {
+        let Some(steps) = open.pop_front() else { break };
+        if steps.len() > 1 && known + found.len() >= ENOUGH {
+            break;
+        }
+        let Some(loose) = loosened(network, origins, &steps) else { continue };
+        let beside: Vec<Vec<Change>> = match check(&loose)? {
+            Verdict::Controllable => vec![Vec::new()],
+            Verdict::Uncontrollable(conflict) => {
+                for next in steps_of(&conflict, network, origins).filter(|next| changed(next).is_some()) {
+                    let more: BTreeSet<Step> = steps.iter().copied().chain([next]).collect();
+                    if seen.insert(more.clone()) {
+                        open.push_back(more);
+                    }
+                }
+                match ENOUGH.saturating_sub(known + found.len()) {
+                    missing if missing > 0 && !steps.is_empty() => {
+                        amounts(&loose, missing)?.into_iter().map(|repair| repair.changes).collect()
+                    }
+                    _ => Vec::new(),
+                }
+            }
+        };
+        for amounts in beside {
+            let needed: Result<Vec<bool>, TooLarge> =
+                steps.iter().map(|step| is_needed(&steps, step, &amounts)).collect();
+            if needed?.into_iter().all(|it| it) {
+                found.push(Restructured { changes: steps.iter().filter_map(changed).collect(), amounts });
             }
         }
     }
+    found.sort_by_key(|it| it.changes.len() + it.amounts.len());
     Ok(found)
 }
 
-#[derive(Clone, Copy)]
+/// What a conflict may rest on that can be loosened: slack first.
+fn steps_of<'a>(
+    conflict: &Conflict,
+    network: &'a Network,
+    origins: &'a Origins,
+) -> impl Iterator<Item = Step> + use<> {
+    let slack = joins(conflict, network, origins).into_iter().map(|span| (Loosening::Slack, span));
+    slack.chain(orders(conflict, network, origins).into_iter().map(|span| (Loosening::Order, span)))
+}
+
+/// A step as a change of the source, if it can be made there and nobody wants to keep what it loosens.
+fn changed(
+    (loosening, span): Step,
+    origins: &Origins,
+    sources: &[Source],
+    wishes: &Wishes,
+) -> Option<Changed> {
+    let kept = |origin: &Origin| wishes.keep.iter().any(|name| is_called(origin, name));
+    let of_form = |origin: &&Origin| origin.span == span && loosening.concerns(origin.kind);
+    let origin = origins.requirements.iter().filter(of_form).find(|origin| !kept(origin))?;
+    let edit = loosening.edit(span, sources)?;
+    let (title, what) = loosening.words(origin);
+    Some(Changed { title, what, place: span, amounts: None, edits: vec![edit] })
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Loosening {
     Slack,
     Order,
@@ -113,13 +182,22 @@ fn spans(
 }
 
 /// The network in which some requirements leave more time, or say nothing.
-fn loosened(network: &Network, origins: &Origins, which: impl Fn(&Origin) -> bool) -> Option<Network> {
-    let loose = |(requirement, origin): (&Requirement, &Origin)| match (which(origin), origin.kind) {
-        (true, OriginKind::Between) => None,
-        (true, _) => Some(Requirement { upper: Bound::Infinite, ..*requirement }),
-        (false, _) => Some(*requirement),
+fn loosened(network: &Network, origins: &Origins, steps: &BTreeSet<Step>) -> Option<Network> {
+    let loose = |(requirement, origin): (&Requirement, &Origin)| {
+        let is_meant = |loosening: Loosening| {
+            loosening.concerns(origin.kind) && steps.contains(&(loosening, origin.span))
+        };
+        Requirement {
+            lower: if is_meant(Loosening::Order) { Bound::Infinite } else { requirement.lower },
+            upper: if is_meant(Loosening::Order) || is_meant(Loosening::Slack) {
+                Bound::Infinite
+            } else {
+                requirement.upper
+            },
+            ..*requirement
+        }
     };
-    let requirements = network.requirements().iter().zip(&origins.requirements).filter_map(loose).collect();
+    let requirements = network.requirements().iter().zip(&origins.requirements).map(loose).collect();
     let (events, links) = (network.events().to_vec(), network.contingents().to_vec());
     Network::new(network.name().to_string(), network.origin(), events, requirements, links).ok()
 }

@@ -50,7 +50,7 @@ impl Levers {
                 by_part.extend(parts.iter().map(|part| (*part, number)));
             }
         }
-        let links = by_part.keys().filter_map(|part| link_of(*part)).collect();
+        let links = by_part.keys().filter_map(|part| part.link()).collect();
         let class_of = merge(network).event_of;
         let late = |link: &&ContingentLink| link.delay != Delay::NONE;
         let late: BTreeSet<EventId> =
@@ -197,7 +197,7 @@ impl Site<'_> {
         let network = &self.merged.network;
         let roots = roots(network);
         let touched: BTreeSet<EventId> =
-            tally.times.keys().filter_map(|part| link_of(*part)).map(|link| roots[link]).collect();
+            tally.times.keys().filter_map(|part| part.link()).map(|link| roots[link]).collect();
         let mut alternatives = Vec::new();
         for &index in self.levers.links.iter().filter(|link| touched.contains(&roots[**link])) {
             let link = network.contingents()[index];
@@ -259,7 +259,7 @@ fn touched(network: &Network, tally: &Tally<'_>) -> BTreeSet<EventId> {
         if let Some(index) = requirement_of(part) {
             let requirement = network.requirements()[index];
             touched.extend([requirement.from, requirement.to]);
-        } else if let Some(index) = link_of(part) {
+        } else if let Some(index) = part.link() {
             let link = network.contingents()[index];
             touched.extend([link.from, link.to]);
         } else {
@@ -277,15 +277,6 @@ fn narrower(link: usize) -> [(Part, i64); 2] {
 fn requirement_of(part: Part) -> Option<usize> {
     match part {
         Part::RequirementUpper(index) | Part::RequirementLower(index) => Some(index),
-        _ => None,
-    }
-}
-
-fn link_of(part: Part) -> Option<usize> {
-    match part {
-        Part::LinkLower(link) | Part::LinkUpper(link) | Part::DelayMin(link) | Part::DelayMax(link) => {
-            Some(link)
-        }
         _ => None,
     }
 }

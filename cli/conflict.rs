@@ -158,7 +158,7 @@ pub(crate) fn members(
                 bound: share.bound(network),
                 times: share.times,
                 amount: share.amount,
-                text: origin.map_or("nothing happens before the origin".to_string(), |it| it.text.clone()),
+                text: origin.map_or("nothing happens before the origin".to_string(), Origin::text),
                 span: origin.and_then(|origin| reporter.span_json(place(share.part, origin))),
             }
         })

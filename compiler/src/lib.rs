@@ -27,7 +27,7 @@
 //!
 //! let lowered = compilation.lowered.expect("no errors, so there is a network");
 //! assert_eq!(lowered.network.contingents().len(), 1);
-//! assert_eq!(lowered.origins.contingents[0].text, "`drive` takes 15 to 20 s, Nature decides");
+//! assert_eq!(lowered.origins.contingents[0].text(), "`drive` takes 15 to 20 s, Nature decides");
 //! assert_eq!(lowered.network.id(lowered.network.origin()), "main:start");
 //!
 //! // A slip: the message knows what was meant, and there is no network.
@@ -101,7 +101,7 @@ pub use format::format;
 pub use front::{Front, front, front_in_order};
 pub use kirk_network::nearest;
 pub use lower::{Lowered, events_of};
-pub use origins::{Origin, OriginKind, Origins, Side, Subject};
+pub use origins::{Origin, OriginKind, Origins, Point, Side, Statement, Subject};
 pub use sexpr::to_sexpr;
 pub use source::{LineIndex, Source, Span};
 pub use unfold::{Unfolded, unfold};

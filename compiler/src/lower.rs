@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use kirk_network::{Bound, ContingentLink, Delay, Duration, Event, EventId, Name, Network, Requirement};
 
 use crate::episode::{Constraint, Episode, EventOf, Interval, Kind};
-use crate::origins::{Origin, OriginKind, Origins, Subject};
+use crate::origins::{Origin, OriginKind, Origins, Point, Statement, Subject};
 use crate::source::Span;
 
 /// What a program is compiled to.
@@ -55,58 +55,34 @@ impl Lowering {
         if let Some(interval) = &episode.duration {
             self.duration(episode, interval, ends);
         }
-        let subject = subject(episode);
         let slack = episode.slack == Some(true);
         match episode.kind {
             Kind::Primitive | Kind::Delay => {}
             Kind::Parallel => {
+                let kind = if slack { OriginKind::Order } else { OriginKind::SideBySide };
                 for &(part, (start, end)) in &parts {
-                    let inner = described(part);
-                    let (kind, starts, stops) = if slack {
-                        (
-                            OriginKind::Order,
-                            format!("{inner} starts after {subject} starts"),
-                            format!("{inner} ends before {subject} ends"),
-                        )
-                    } else {
-                        (
-                            OriginKind::SideBySide,
-                            format!("{inner} starts together with the others here (no slack)"),
-                            format!("{inner} ends together with the others here (no slack)"),
-                        )
-                    };
-                    self.link(ends.0, start, kind, episode, starts);
-                    self.link(end, ends.1, kind, episode, stops);
+                    self.link((ends.0, start), kind, episode, Statement::Starts(subject(part)));
+                    self.link((end, ends.1), kind, episode, Statement::Ends(subject(part)));
                 }
             }
             Kind::Program | Kind::Sequence | Kind::WithTemporalConstraint => {
                 let kind = if slack { OriginKind::Order } else { OriginKind::Join };
-                let mut last = ends.0;
-                let mut before: Option<String> = None;
+                let mut before: Option<(&Episode, EventId)> = None;
                 for &(part, (start, end)) in &parts {
-                    let inner = described(part);
-                    let text = match (&before, slack) {
-                        (None, true) => format!("{inner} starts after {subject} starts"),
-                        (None, false) => format!("{inner} starts when {subject} starts"),
-                        (Some(before), true) => format!("{inner} starts after {before} ends"),
-                        (Some(before), false) => format!("{inner} starts when {before} ends (no slack)"),
+                    let (from, says) = match before {
+                        None => (ends.0, Statement::Starts(subject(part))),
+                        Some((before, end)) => (end, Statement::Follows(subject(part), subject(before))),
                     };
-                    self.link(last, start, kind, episode, text);
-                    last = end;
-                    before = Some(inner);
+                    self.link((from, start), kind, episode, says);
+                    before = Some((part, end));
                 }
-                if let Some(before) = before {
-                    let text = match slack {
-                        true => format!("{subject} ends after {before} ends"),
-                        false => format!("{subject} ends when {before} ends"),
-                    };
-                    self.link(last, ends.1, kind, episode, text);
+                if let Some((last, end)) = before {
+                    self.link((end, ends.1), kind, episode, Statement::Closes(subject(last)));
                 }
             }
         }
         if episode.parts.is_empty() && !matches!(episode.kind, Kind::Primitive | Kind::Delay) {
-            let text = format!("{subject} is empty and takes no time");
-            self.link(ends.0, ends.1, OriginKind::Empty, episode, text);
+            self.link(ends, OriginKind::Empty, episode, Statement::Empty);
         }
         ends
     }
@@ -122,8 +98,11 @@ impl Lowering {
             .collect();
         let find = |event: &EventOf| {
             let (episode, (start, end)) = events.get(event.episode.as_str())?;
-            let words = format!("the {} of {}", if event.end { "end" } else { "start" }, called(episode));
-            Some((if event.end { *end } else { *start }, words, names_of(episode)))
+            let (at, point) = match event.end {
+                true => (*end, Point::End(called(episode))),
+                false => (*start, Point::Start(called(episode))),
+            };
+            Some((at, point, names_of(episode)))
         };
         for Constraint { from, to, interval } in &root.constraints {
             let (Some((from, before, mut names)), Some((to, after, others))) = (find(from), find(to)) else {
@@ -132,17 +111,13 @@ impl Lowering {
             names.extend(others);
             let Interval { lower, upper, lower_span, upper_span, span } = *interval;
             self.requirements.push(Requirement { from, to, lower: Bound::Finite(lower), upper });
-            let subject = Subject::Reach(format!("from {before} to {after}"));
-            let text = format!("{} {subject}", range(interval));
-            let places = [lower_span, upper_span, span, span];
             self.origins.requirements.push(Origin {
                 span,
-                text,
                 kind: OriginKind::Between,
-                subject,
-                end: after,
+                says: Statement::Passes { least: lower.into(), most: upper, news: None },
+                subject: Subject::Reach(Box::new([before, after])),
                 names,
-                places,
+                places: [lower_span, upper_span, span, span],
             });
         }
     }
@@ -155,65 +130,48 @@ impl Lowering {
         EventId(self.events.len() as u32 - 1)
     }
 
-    fn link(&mut self, from: EventId, to: EventId, kind: OriginKind, episode: &Episode, text: String) {
+    fn link(&mut self, (from, to): Ends, kind: OriginKind, episode: &Episode, says: Statement) {
         let zero = Bound::Finite(Duration::ZERO);
         let upper = if kind.is_join() { zero } else { Bound::Infinite };
         self.requirements.push(Requirement { from, to, lower: zero, upper });
-        let (span, subject, end) = (episode.span, subject(episode), end_of(episode));
-        let names = names_of(episode);
-        self.origins.requirements.push(Origin { span, text, kind, subject, end, names, places: [span; 4] });
+        let (subject, names) = (subject(episode), names_of(episode));
+        let span = episode.span;
+        self.origins.requirements.push(Origin { span, kind, says, subject, names, places: [span; 4] });
     }
 
     fn duration(&mut self, episode: &Episode, interval: &Interval, (from, to): Ends) {
-        let subject = subject(episode);
-        let takes = range(interval);
-        let mut places = [interval.lower_span, interval.upper_span, interval.span, interval.span];
-        let upper = match interval.upper {
-            Bound::Finite(upper) if episode.contingent => upper,
-            bound => {
-                let (kind, text) = match episode.kind {
-                    Kind::Primitive | Kind::Delay => {
-                        (OriginKind::Duration, format!("{subject} takes {takes}"))
-                    }
-                    _ => (OriginKind::Constraint, format!("this takes {takes} from start to end")),
-                };
-                self.requirements.push(Requirement {
-                    from,
-                    to,
-                    lower: Bound::Finite(interval.lower),
-                    upper: bound,
-                });
-                let (end, names) = (end_of(episode), names_of(episode));
-                self.origins.requirements.push(Origin {
-                    span: interval.span,
-                    text,
-                    kind,
-                    subject,
-                    end,
-                    names,
-                    places,
-                });
-                return;
-            }
-        };
-        let mut text = format!("{subject} takes {takes}, Nature decides");
-        let mut delay = Delay::NONE;
-        if let Some(late) = &episode.delay {
-            delay = Delay { min: late.lower, max: late.upper };
-            places[2] = late.lower_span;
-            places[3] = late.upper_span;
-            text.push_str(&format!(", and the news of its end comes {} later", range(late)));
-        }
-        self.contingents.push(ContingentLink { from, to, lower: interval.lower, upper, delay });
-        self.origins.contingents.push(Origin {
-            span: interval.span,
-            text,
-            kind: OriginKind::Contingent,
-            subject,
-            end: end_of(episode),
+        let Interval { lower, upper, lower_span, upper_span, span } = *interval;
+        let origin = |kind: OriginKind, news: Option<&Interval>| Origin {
+            span,
+            kind,
+            says: Statement::Passes {
+                least: lower.into(),
+                most: upper,
+                news: news.map(|late| Delay { min: late.lower, max: late.upper }),
+            },
+            subject: subject(episode),
             names: names_of(episode),
-            places,
-        });
+            places: match news {
+                Some(late) => [lower_span, upper_span, late.lower_span, late.upper_span],
+                None => [lower_span, upper_span, span, span],
+            },
+        };
+        match upper {
+            Bound::Finite(upper) if episode.contingent => {
+                let late = episode.delay.as_ref();
+                let delay = late.map_or(Delay::NONE, |late| Delay { min: late.lower, max: late.upper });
+                self.contingents.push(ContingentLink { from, to, lower, upper, delay });
+                self.origins.contingents.push(origin(OriginKind::Contingent, late));
+            }
+            upper => {
+                let kind = match episode.kind {
+                    Kind::Primitive | Kind::Delay => OriginKind::Duration,
+                    _ => OriginKind::Constraint,
+                };
+                self.requirements.push(Requirement { from, to, lower: lower.into(), upper });
+                self.origins.requirements.push(origin(kind, None));
+            }
+        }
     }
 }
 
@@ -241,12 +199,11 @@ pub fn events_of(root: &Episode) -> Vec<(&Episode, Ends)> {
     found
 }
 
-/// The name a user knows an episode by.
-pub(crate) fn called(episode: &Episode) -> String {
-    match (episode.internal, episode.labels.first()) {
-        (_, Some(label)) => format!("`{label}`"),
-        (false, None) => format!("`{}`", episode.name),
-        (true, None) => format!("the `{}`", episode.kind.word()),
+/// What a user knows an episode by.
+pub(crate) fn called(episode: &Episode) -> Subject {
+    match episode.labels.first() {
+        Some(label) => Subject::Named(label.clone()),
+        None => subject(episode),
     }
 }
 
@@ -265,28 +222,4 @@ fn names_of(episode: &Episode) -> Vec<String> {
         false => vec![episode.name.clone(), episode.name.split('#').next().unwrap_or_default().to_string()],
     };
     own.into_iter().chain(episode.labels.iter().cloned()).collect()
-}
-
-/// What the end of an episode is called in a sentence.
-fn end_of(episode: &Episode) -> String {
-    format!("the end of {}", subject(episode))
-}
-
-/// An episode in a sentence about the one around it.
-fn described(episode: &Episode) -> String {
-    match episode.internal {
-        true => format!("the `{}` inside", episode.kind.word()),
-        false => format!("`{}`", episode.name),
-    }
-}
-
-/// `15 to 20 s`.
-fn range(interval: &Interval) -> String {
-    match interval.upper {
-        Bound::Finite(upper) if upper == interval.lower => format!("{upper} s"),
-        Bound::Finite(upper) if interval.lower == Duration::ZERO => format!("at most {upper} s"),
-        Bound::Finite(upper) => format!("{} to {upper} s", interval.lower),
-        Bound::Infinite if interval.lower == Duration::ZERO => "any time".to_string(),
-        Bound::Infinite => format!("at least {} s", interval.lower),
-    }
 }

@@ -1,8 +1,7 @@
-//! Where the constraints of a network come from, and how to speak of them: of a program its forms, of a network file its entries.
+//! Where the constraints of a network come from: of a program its forms, of a network file its entries. How they are spoken of is
+//! in `wording/origins.rs`.
 
-use std::fmt;
-
-use kirk_network::{Bound, ContingentLink, Delay, Duration, EventId, Network, Part, Requirement, SourceMap};
+use kirk_network::{Bound, ContingentLink, Delay, EventId, Network, Part, Requirement, SourceMap};
 
 use serde::Serialize;
 
@@ -17,55 +16,67 @@ pub struct Origins {
     pub contingents: Vec<Origin>,
 }
 
-/// Where a constraint comes from.
-#[derive(Clone, Debug)]
+/// Where a constraint comes from, and what it says.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Origin {
     /// The form that says so.
     pub span: Span,
-    /// What it says, as part of a sentence.
-    pub text: String,
     /// What kind of constraint it is.
     pub kind: OriginKind,
+    /// What it says.
+    pub says: Statement,
     /// What it is about.
     pub subject: Subject,
-    /// The event at its end, in words.
-    pub end: String,
     /// What a user may call it: names of what it is about, and of an entry of a file its number.
     pub names: Vec<String>,
     /// Where the lower and the upper bound are written, and the shortest and the longest delay.
     pub places: [Span; 4],
 }
 
+/// What a constraint says of what it is about.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Statement {
+    /// How much time passes; and of what Nature decides, how late the news of its end is.
+    Passes {
+        /// At least so much.
+        least: Bound,
+        /// At most so much.
+        most: Bound,
+        /// So late, if it is not heard of at once.
+        news: Option<Delay>,
+    },
+    /// A part starts when it starts, or after that.
+    Starts(Subject),
+    /// A part ends when it ends, or before that.
+    Ends(Subject),
+    /// The first of its parts starts when the second ends, or after that.
+    Follows(Subject, Subject),
+    /// It ends when its last part ends, or after that.
+    Closes(Subject),
+    /// It has no parts and takes no time.
+    Empty,
+}
+
 /// What a constraint is about.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Subject {
-    /// An activity, by its name.
+    /// An activity, or a form with a label, by its name.
     Named(String),
     /// A form without a name, by its word.
     Form(&'static str),
-    /// What lies between two events: "from `a` to `b`".
-    Reach(String),
+    /// What lies between two events.
+    Reach(Box<[Point; 2]>),
 }
 
-impl Subject {
-    /// What to call it where it does not stand: "`drive`", "the `sequence`".
-    pub fn elsewhere(&self) -> String {
-        match self {
-            Subject::Form(word) => format!("the `{word}`"),
-            _ => self.to_string(),
-        }
-    }
-}
-
-/// What to call it where it stands: "`drive`", "this `sequence`".
-impl fmt::Display for Subject {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Subject::Named(name) => write!(f, "`{name}`"),
-            Subject::Form(word) => write!(f, "this `{word}`"),
-            Subject::Reach(reach) => f.write_str(reach),
-        }
-    }
+/// An event, as an author knows it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Point {
+    /// The start of something.
+    Start(Subject),
+    /// The end of something.
+    End(Subject),
+    /// An event of a file.
+    Event(String),
 }
 
 /// Which amount of a constraint a bound is.
@@ -83,16 +94,6 @@ pub enum Side {
 }
 
 impl Side {
-    /// It as the end of a sentence about what it bounds.
-    pub fn word(self) -> &'static str {
-        match self {
-            Side::Lower => "at least",
-            Side::MaxDelay => "maximum",
-            Side::MinDelay => "minimum",
-            Side::Upper => "at most",
-        }
-    }
-
     /// `None` for what has no bound.
     pub fn of(part: Part) -> Option<Side> {
         Some(match part {
@@ -143,14 +144,6 @@ impl OriginKind {
 }
 
 impl Origin {
-    /// What it is about, as the end of a sentence: "for `drive`", "from the start of `a` to the end of `b`".
-    pub fn about(&self) -> String {
-        match &self.subject {
-            Subject::Reach(reach) => reach.clone(),
-            subject => format!("for {}", subject.elsewhere()),
-        }
-    }
-
     /// Where one of its amounts is written.
     pub fn place(&self, side: Side) -> Span {
         let [lower, upper, min_delay, max_delay] = self.places;
@@ -161,63 +154,31 @@ impl Origin {
             Side::MaxDelay => max_delay,
         }
     }
-
-    /// From where to where a requirement of a file reaches the other way round: what is said of it with a negative bound, people
-    /// say with a positive one from the later event to the earlier.
-    pub(crate) fn reversed(&self) -> Option<String> {
-        match (self.kind, &self.names[..]) {
-            (OriginKind::Requirement, [_, from, to]) => Some(format!("from `{to}` to `{from}`")),
-            _ => None,
-        }
-    }
 }
 
 impl Origins {
     /// Those of a network that was read from a file.
     pub fn of_network(network: &Network, places: &SourceMap) -> Origins {
-        let label = |event: EventId| network.label(event);
         let span = |part: Part| places.of(part).map_or(Span::default(), |at| Span::new(0, at.start, at.end));
+        let origin = |kind, says, number: String, (from, to): (EventId, EventId), parts: [Part; 2]| {
+            let [lower, upper] = parts.map(span);
+            let [from, to] = [from, to].map(|event| network.label(event).to_string());
+            let names = vec![number, from.clone(), to.clone()];
+            let subject = Subject::Reach(Box::new([Point::Event(from), Point::Event(to)]));
+            Origin { span: lower, kind, says, subject, names, places: [lower, upper, lower, upper] }
+        };
         let requirement = |(index, requirement): (usize, &Requirement)| {
-            let Requirement { from, to, lower, upper } = *requirement;
-            let [lower_place, upper_place] =
-                [Part::RequirementLower(index), Part::RequirementUpper(index)].map(span);
-            let zero = Bound::Finite(Duration::ZERO);
-            let subject = Subject::Reach(format!("from `{}` to `{}`", label(from), label(to)));
-            let text = match (lower, upper) {
-                (lower, upper) if lower == zero && upper == zero => {
-                    format!("`{}` and `{}` are one event", label(from), label(to))
-                }
-                (Bound::Infinite, Bound::Infinite) => format!("any time {subject}"),
-                (Bound::Finite(least), Bound::Infinite) => format!("at least {least} s {subject}"),
-                (Bound::Infinite, Bound::Finite(most)) => format!("at most {most} s {subject}"),
-                (Bound::Finite(least), Bound::Finite(most)) => format!("{least} to {most} s {subject}"),
-            };
-            Origin {
-                span: lower_place,
-                text,
-                kind: OriginKind::Requirement,
-                subject,
-                end: format!("`{}`", label(to)),
-                names: vec![format!("requirements[{index}]"), label(from).to_string(), label(to).to_string()],
-                places: [lower_place, upper_place, lower_place, upper_place],
-            }
+            let Requirement { from, to, lower: least, upper: most } = *requirement;
+            let says = Statement::Passes { least, most, news: None };
+            let parts = [Part::RequirementLower(index), Part::RequirementUpper(index)];
+            origin(OriginKind::Requirement, says, format!("requirements[{index}]"), (from, to), parts)
         };
         let link = |(index, link): (usize, &ContingentLink)| {
-            let end = format!("`{}`", label(link.to));
-            let [lower_place, upper_place] = [Part::LinkLower(index), Part::LinkUpper(index)].map(span);
-            let subject = Subject::Reach(format!("from `{}` to {end}", label(link.from)));
-            let mut text = format!("{} to {} s {subject}, Nature decides", link.lower, link.upper);
-            if link.delay != Delay::NONE {
-                let most = link.delay.max.finite().map_or("any time".to_string(), |max| format!("{max} s"));
-                text.push_str(&format!(", and its news comes {} s to {most} later", link.delay.min));
-            }
-            let names = vec![
-                format!("contingents[{index}]"),
-                label(link.from).to_string(),
-                label(link.to).to_string(),
-            ];
-            let places = [lower_place, upper_place, lower_place, upper_place];
-            Origin { span: lower_place, text, kind: OriginKind::Link, subject, end, names, places }
+            let ContingentLink { from, to, lower, upper, delay } = *link;
+            let news = (delay != Delay::NONE).then_some(delay);
+            let says = Statement::Passes { least: lower.into(), most: upper.into(), news };
+            let parts = [Part::LinkLower(index), Part::LinkUpper(index)];
+            origin(OriginKind::Link, says, format!("contingents[{index}]"), (from, to), parts)
         };
         Origins {
             requirements: network.requirements().iter().enumerate().map(requirement).collect(),

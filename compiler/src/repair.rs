@@ -325,16 +325,16 @@ fn title(change: &Change, origin: &Origin, unit: edit::Unit) -> String {
         Part::RequirementLower(_) => format!("at least {to}{instead} {of}"),
         Part::LinkLower(_) => format!("Nature taking at least {to}{instead} {of}"),
         Part::LinkUpper(_) => format!("Nature taking at most {to}{instead} {of}"),
-        Part::DelayMin(_) | Part::DelayMax(_) => format!("news of {} within {to}{instead}", origin.end),
+        Part::DelayMin(_) | Part::DelayMax(_) => format!("news of {} within {to}{instead}", origin.end()),
         _ => format!("at most {to}{instead} {of}"),
     }
 }
 
 /// What a bound is about; `None` for what nobody wrote.
 pub fn what(part: Part, origin: &Origin) -> Option<String> {
-    let Origin { subject, end, .. } = origin;
+    let subject = &origin.subject;
     let text = match (origin.kind, part) {
-        (_, Part::DelayMin(_) | Part::DelayMax(_)) => format!("how late {end} is heard"),
+        (_, Part::DelayMin(_) | Part::DelayMax(_)) => format!("how late {} is heard", origin.end()),
         (OriginKind::Between | OriginKind::Requirement, _) => subject.to_string(),
         (OriginKind::Link, _) => format!("{subject}, Nature decides"),
         (OriginKind::Contingent, _) => format!("how long {subject} takes, Nature decides"),

@@ -6,6 +6,7 @@ pub(crate) mod conflict;
 mod evaluate;
 mod expand;
 mod notes;
+mod origins;
 mod parse;
 mod read;
 

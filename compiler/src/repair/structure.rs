@@ -139,11 +139,11 @@ impl Loosening {
     }
 
     fn words(self, origin: &Origin) -> (String, String) {
-        let Origin { subject, text, .. } = origin;
+        let subject = &origin.subject;
         let form = subject.elsewhere();
         match self {
             Loosening::Slack => (format!("slack (`:slack t`) in {form}"), format!("the slack of {form}")),
-            Loosening::Order => (format!("without the order {subject}"), text.clone()),
+            Loosening::Order => (format!("without the order {subject}"), origin.text()),
         }
     }
 }

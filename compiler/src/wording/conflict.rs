@@ -116,14 +116,16 @@ pub(crate) fn stated(stated: &Stated<'_>, sources: &[Source], theory: bool) -> S
         Says::AtMost(most) => limit(origin, "at most", &written(most)),
         Says::NatureAtLeast(least) => format!("Nature may take only {} {}", written(least), origin.about()),
         Says::NatureAtMost(most) => format!("Nature may take up to {} {}", written(most), origin.about()),
-        Says::NewsAtLeast(least) => format!("the news of {} may be only {} late", origin.end, written(least)),
-        Says::NewsAtMost(Bound::Finite(most)) => {
-            format!("the news of {} may be {} late", origin.end, written(most))
+        Says::NewsAtLeast(least) => {
+            format!("the news of {} may be only {} late", origin.end(), written(least))
         }
-        Says::NewsAtMost(Bound::Infinite) => format!("{} may never be heard", origin.end),
+        Says::NewsAtMost(Bound::Finite(most)) => {
+            format!("the news of {} may be {} late", origin.end(), written(most))
+        }
+        Says::NewsAtMost(Bound::Infinite) => format!("{} may never be heard", origin.end()),
         Says::Joined => "joined here: without slack, all parts start together and end together".to_string(),
-        Says::Nothing => format!("joined here: {}", origin.text),
-        Says::Itself => origin.text.clone(),
+        Says::Nothing => format!("joined here: {}", origin.text()),
+        Says::Itself => origin.text(),
     };
     let times = if share.times > 1 { format!(" ({} times)", share.times) } else { String::new() };
     let amount = match share.amount {
@@ -141,9 +143,7 @@ fn limit(origin: &Origin, word: &str, bound: &str) -> String {
             format!("{word} {bound} {}", origin.subject)
         }
         OriginKind::Duration | OriginKind::Contingent => format!("{} takes {word} {bound}", origin.subject),
-        OriginKind::Join | OriginKind::SideBySide | OriginKind::Empty | OriginKind::Order => {
-            origin.text.clone()
-        }
+        OriginKind::Join | OriginKind::SideBySide | OriginKind::Empty | OriginKind::Order => origin.text(),
     }
 }
 
@@ -181,13 +181,13 @@ pub(crate) fn step(
 ) -> String {
     let needs = amount(step.needs.abs(), origin.place(side), sources);
     let but = if is_first { "" } else { "but " };
-    let Origin { kind, text, end, .. } = origin;
+    let end = || origin.end();
     match step.part {
         Part::LinkUpper(_) => format!("Nature may take {needs} {}", origin.about()),
         Part::LinkLower(_) => format!("{but}Nature may take only {needs} {}", origin.about()),
-        Part::DelayMax(_) => format!("the news of {end} may take {needs}"),
-        Part::DelayMin(_) => format!("{but}the news of {end} may take only {needs}"),
-        _ if !kind.is_amount() => text.clone(),
+        Part::DelayMax(_) => format!("the news of {} may take {needs}", end()),
+        Part::DelayMin(_) => format!("{but}the news of {} may take only {needs}", end()),
+        _ if !origin.kind.is_amount() => origin.text(),
         _ if step.needs == Duration::ZERO => format!("the order {}", origin.about()),
         Part::RequirementLower(_) if step.needs > Duration::ZERO => {
             format!("you need at least {needs} {}", origin.about())

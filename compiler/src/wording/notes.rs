@@ -91,7 +91,7 @@ fn never_late(problem: &NeverLate<'_>) -> Diagnostic {
 fn happens(moment: Moment<'_>) -> String {
     let name = |episode: &Episode| match episode.kind {
         Kind::Primitive => format!("`{}`", clip(&episode.name)),
-        _ => called(episode),
+        _ => called(episode).elsewhere(),
     };
     match moment {
         Moment::MissionStarts => "the mission starts".to_string(),
@@ -109,5 +109,5 @@ fn place(moment: Moment<'_>) -> Option<(Span, String)> {
         Moment::Ends(episode) => (episode, "ends"),
         Moment::MissionStarts | Moment::NewsComes(_) | Moment::Unknown => return None,
     };
-    episode.internal.then(|| (episode.span, format!("{} that {happens} then", called(episode))))
+    episode.internal.then(|| (episode.span, format!("{} that {happens} then", called(episode).elsewhere())))
 }

@@ -123,7 +123,7 @@ fn line(
     interval: &str,
     origin: &Origin,
 ) -> String {
-    format!("  {} {arrow} {} {interval}    ; {}\n", network.id(from), network.id(to), origin.text)
+    format!("  {} {arrow} {} {interval}    ; {}\n", network.id(from), network.id(to), origin.text())
 }
 
 fn bound(bound: Bound, infinite: &str) -> String {

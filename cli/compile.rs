@@ -2,7 +2,7 @@
 
 use std::io;
 
-use kirk_compiler::{Severity, Span, to_sexpr};
+use kirk_compiler::{Severity, Span, to_sexpr, too_large};
 use kirk_network::dispatchable::dispatchable;
 use kirk_network::merge::merge;
 use kirk_network::precedence::Precedence;
@@ -17,7 +17,6 @@ use crate::json::line;
 use crate::judge::judge;
 use crate::output::{Status, complain, deliver};
 use crate::report::Reporter;
-use crate::wording::Problem;
 
 pub(crate) fn compile(arguments: &Compile, common: &Common) -> io::Result<Status> {
     let mut input = load_all(&arguments.files, &arguments.selection);
@@ -61,7 +60,7 @@ fn emit(arguments: &Compile, input: &mut Input) -> Result<String, Refusal> {
     let reduction = match reduce(&merged) {
         Ok(reduction) => reduction,
         Err(ReduceError::TooLarge) => {
-            input.diagnostics.push(Problem::TooLarge.at(Span::default()));
+            input.diagnostics.push(too_large(Span::default()));
             return Err(Refusal::Input);
         }
         Err(ReduceError::Never(_)) => {
@@ -79,7 +78,7 @@ fn emit(arguments: &Compile, input: &mut Input) -> Result<String, Refusal> {
             return Err(Refusal::NotControllable);
         }
         Err(_) => {
-            input.diagnostics.push(Problem::TooLarge.at(Span::default()));
+            input.diagnostics.push(too_large(Span::default()));
             return Err(Refusal::Input);
         }
     };

@@ -5,7 +5,7 @@ use std::io;
 use kirk_compiler::{Diagnostic, Source, Span, format};
 
 use crate::args::{Common, Fmt};
-use crate::input::{Unreadable, is_network, text};
+use crate::input::{Unreadable, is_network, shown, text};
 use crate::output::{Status, print, print_line};
 use crate::replace::replace;
 use crate::report::Reporter;
@@ -21,7 +21,7 @@ pub(crate) fn fmt(arguments: &Fmt, common: &Common) -> io::Result<Status> {
 
 /// A file that cannot be read is left as it is.
 fn fmt_one(file: &str, check: bool, common: &Common) -> io::Result<Status> {
-    let name = if file == "-" { "<stdin>" } else { file };
+    let name = shown(file);
     let refuse = |text: &str, diagnostics: &[Diagnostic]| {
         Reporter::new(&[Source::new(name, text)]).show(diagnostics, common)?;
         Ok(Status::Wrong)

@@ -148,9 +148,12 @@ pub(crate) fn load_begun(files: &[String], mut first: Option<Bytes>, selection: 
     }
 }
 
+/// What standard input is called.
+pub(crate) const STDIN: &str = "<stdin>";
+
 /// What to call a file in messages.
 pub(crate) fn shown(file: &str) -> &str {
-    if file == "-" { "<stdin>" } else { file }
+    if file == "-" { STDIN } else { file }
 }
 
 /// Why a file is no text to go on with.
@@ -205,7 +208,7 @@ fn text_of(file: &str, bytes: Bytes) -> Result<String, Box<Unreadable>> {
     let text = String::from_utf8(bytes)
         .map_err(|error| Unreadable::bytes(error.as_bytes(), error.utf8_error().valid_up_to()))?;
     if text.len() as u64 > LARGEST_PROGRAM && !is_network(file, &text) {
-        return Err(Unreadable::at_all(Problem::TooLong(text.len())));
+        return Err(Unreadable::at_all(Problem::TooLong { length: text.len(), most: LARGEST_PROGRAM }));
     }
     Ok(text)
 }

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use kirk_compiler::{Span, Told};
+use kirk_compiler::{Span, Told, too_large};
 use kirk_network::assume::{Assumed, Assumption, check_assuming};
 use kirk_network::merge::merge;
 use kirk_network::stnu::TooLarge;
@@ -13,7 +13,6 @@ use crate::args::Delays;
 use crate::conflict::{ConflictJson, MemberJson, members, told};
 use crate::input::Input;
 use crate::report::{DiagnosticJson, Reporter};
-use crate::wording::Problem;
 
 /// The verdict on a network and how long it took.
 pub(crate) struct Judged {
@@ -46,7 +45,7 @@ pub(crate) fn judge_assuming(input: &mut Input, delays: Delays, theory: bool) ->
         Ok((Verdict::Controllable, assumed)) => (None, assumed),
         Ok((Verdict::Uncontrollable(conflict), assumed)) => (Some(conflict), assumed),
         Err(TooLarge) => {
-            input.diagnostics.push(Problem::TooLarge.at(Span::default()));
+            input.diagnostics.push(too_large(Span::default()));
             return None;
         }
     };

@@ -5,7 +5,7 @@ use std::io;
 
 use kirk_compiler::nearest::nearest;
 use kirk_compiler::repair::{Changed, Preference, Proposal, Proposals, Wishes, names, proposals};
-use kirk_compiler::{Edit, Source, Span, Text};
+use kirk_compiler::{Edit, Source, Span, Text, too_large};
 use kirk_network::stnu::TooLarge;
 use kirk_network::{Duration, Verdict, check};
 use serde::Serialize;
@@ -14,12 +14,11 @@ use similar::TextDiff;
 use crate::args::{Common, Prefer, RepairOf, TextOrJson};
 use crate::conflict::{ChangedJson, SpotJson};
 use crate::foreign::one_line;
-use crate::input::{Input, load_all, without_mark};
+use crate::input::{Input, STDIN, load_all, without_mark};
 use crate::json::line;
 use crate::output::{Status, complain, print, print_line, remark};
 use crate::replace::Replacement;
 use crate::report::Reporter;
-use crate::wording::Problem;
 
 pub(crate) fn repair_of(arguments: &RepairOf, common: &Common) -> io::Result<Status> {
     let mut input = load_all(&arguments.files, &arguments.selection);
@@ -43,7 +42,7 @@ pub(crate) fn repair_of(arguments: &RepairOf, common: &Common) -> io::Result<Sta
     let mut found = match found {
         Ok(found) => found,
         Err(TooLarge) => {
-            input.diagnostics.push(Problem::TooLarge.at(Span::default()));
+            input.diagnostics.push(too_large(Span::default()));
             Reporter::new(&input.sources).show(&input.diagnostics, common)?;
             return Ok(Status::Wrong);
         }
@@ -203,7 +202,7 @@ fn patch(before: &Source, after: &Source) -> String {
 
 /// Writes the new text beside the old one, if that is what is still there.
 fn prepared(before: &Source, after: &Source) -> Result<Replacement, String> {
-    if before.name == "<stdin>" {
+    if before.name == STDIN {
         return Err("it came from standard input; `--diff` prints the change".to_string());
     }
     let about = fs::metadata(&before.name).map_err(|error| error.to_string())?;

@@ -2,7 +2,7 @@
 
 use std::io;
 
-use kirk_compiler::{Diagnostic, Severity, Span};
+use kirk_compiler::{Diagnostic, Severity, Span, too_large};
 use kirk_network::Time;
 use kirk_network::assume::Assumption;
 use kirk_runtime::execution::FORMAT;
@@ -19,7 +19,6 @@ use crate::news::treatment;
 use crate::observations::Observations;
 use crate::output::{Status, eprint, print};
 use crate::report::Reporter;
-use crate::wording::Problem;
 
 pub(crate) fn run(arguments: &Run, common: &Common) -> io::Result<Status> {
     let mut input = load_all(&arguments.files, &arguments.selection);
@@ -92,7 +91,7 @@ pub(crate) fn plan_of(input: &mut Input) -> Option<Result<Plan, Unproven>> {
     match Plan::new(network) {
         Ok(plan) => Some(Ok(plan)),
         Err(NoPlan::TooLarge) => {
-            input.diagnostics.push(Problem::TooLarge.at(Span::default()));
+            input.diagnostics.push(too_large(Span::default()));
             None
         }
         Err(NoPlan::Uncontrollable(conflict)) => {

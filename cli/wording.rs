@@ -4,11 +4,8 @@ use std::io;
 
 use kirk_compiler::{Code, Diagnostic, Span};
 use kirk_network::ParseDurationError;
-use kirk_network::stnu::TooLarge;
 use kirk_runtime::Impossible;
 use kirk_runtime::execution::FORMAT;
-
-use crate::input::LARGEST_PROGRAM;
 
 /// What is wrong, and what is known about it.
 pub(crate) enum Problem<'a> {
@@ -26,12 +23,10 @@ pub(crate) enum Problem<'a> {
     NetworkToLayOut(&'a str),
     /// Bytes that are no text.
     NotText { line: usize, byte: usize },
-    /// A program of so many bytes.
-    TooLong(usize),
+    /// A program of more bytes than are read.
+    TooLong { length: usize, most: u64 },
     /// What a reader of networks says.
     BadNetwork(String),
-    /// The durations of a network add up to too much.
-    TooLarge,
     /// An option that chooses a program of a network.
     NoPrograms { option: &'static str, value: &'a str },
     /// A journal that cannot be repeated, for this reason.
@@ -83,12 +78,11 @@ impl Problem<'_> {
                 error(Code::NotText, format!("this is not UTF-8 text (line {line}, byte {byte})"))
                     .help("kirk reads RMPL and networks as text; is this the right file, or a compiled or compressed one?")
             }
-            Problem::TooLong(length) => error(
+            Problem::TooLong { length, most } => error(
                 Code::TooLong,
-                format!("this file has {length} bytes; kirk reads programs of up to {LARGEST_PROGRAM}"),
+                format!("this file has {length} bytes; kirk reads programs of up to {most}"),
             ),
             Problem::BadNetwork(message) => error(Code::BadNetwork, message),
-            Problem::TooLarge => error(Code::NumbersTooLarge, TooLarge.to_string()),
             Problem::NoPrograms { option, value } => error(
                 Code::NoPrograms,
                 format!("`{option} {value}` chooses among the programs of a source, and this is a network"),

@@ -180,6 +180,20 @@ pub enum Limits {
     Wait,
 }
 
+/// What a number is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Role {
+    Lower(Limits),
+    Upper(Limits),
+    /// Of repetitions.
+    Count,
+    /// What a name stands for.
+    Named,
+    /// Part of a calculation.
+    Operand,
+    Argument,
+}
+
 /// An interval of durations.
 #[derive(Clone, Debug, Serialize)]
 pub struct Bounds {

@@ -2,7 +2,7 @@
 
 use kirk_network::{Bound, Duration};
 
-use crate::ast::{Ident, Limits, Value, ValueKind};
+use crate::ast::{Ident, Limits, Role, Value, ValueKind};
 use crate::calculate::{NoResult, scale};
 use crate::source::Span;
 use crate::typed::{Expression, ExpressionKind};
@@ -39,18 +39,6 @@ pub(crate) struct Reversed {
     pub(crate) written: Written,
     /// The named numbers that are written there.
     pub(crate) defined: Vec<Ident>,
-}
-
-/// What a number is to be.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Role {
-    Lower(Limits),
-    Upper(Limits),
-    Count,
-    /// What a name stands for.
-    Named,
-    /// Part of a calculation.
-    Operand,
 }
 
 /// Why something cannot be repeated so many times.

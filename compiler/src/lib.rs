@@ -105,6 +105,7 @@ pub use origins::{Origin, OriginKind, Origins, Point, Side, Statement, Subject};
 pub use sexpr::to_sexpr;
 pub use source::{LineIndex, Source, Span};
 pub use unfold::{Unfolded, unfold};
+pub use wording::conflict::too_large;
 pub use written::{Written, measurable, written};
 
 /// What to compile of the sources.

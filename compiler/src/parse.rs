@@ -20,11 +20,11 @@ pub(crate) use slips::elsewhere::{Cure, Instead, instead_of_operator};
 
 use std::collections::BTreeSet;
 
-use crate::ast::{Ident, NamedNumber, Program};
+use crate::ast::{Ident, NamedNumber, Program, Role};
 use crate::form::{Form, FormKind};
 use crate::problem::Problems;
 use crate::words::DEFINITIONS;
-use problem::{Expected, Missing, Number, Problem};
+use problem::{Expected, Missing, Problem};
 
 /// The package of definitions that no `in-package` comes before.
 pub(crate) const DEFAULT_PACKAGE: &str = "cl-user";
@@ -77,7 +77,7 @@ fn named_number(form: &Form, rest: &[Form], home: &str, problems: &mut Problems)
             Some(name) => Some(NamedNumber {
                 home: home.to_string(),
                 name,
-                value: amount::amount(value, Number::Value, problems),
+                value: amount::amount(value, Role::Named, problems),
             }),
             None => {
                 problems.push(Problem::Unexpected { found: name, expected: Expected::NumberName });

@@ -134,7 +134,7 @@ impl Problems {
                 let at = self.list.partition_point(|d| d.span.source <= source);
                 let span =
                     self.list.get(at.wrapping_sub(1)).map_or(Span { source, start: 0, end: 0 }, |d| d.span);
-                self.list.insert(at, too_many(more, severity, span));
+                self.list.insert(at, too_many(more, MAX_PER_SOURCE, severity, span));
             }
         }
         self.list

@@ -10,17 +10,16 @@ mod origins;
 mod parse;
 mod read;
 
-use crate::ast::Limits;
+use crate::ast::{Limits, Role};
 use crate::code::Code;
 use crate::diagnostic::{Diagnostic, Severity};
-use crate::problem::MAX_PER_SOURCE;
 use crate::source::Span;
 
-/// What is said at the end about a source with more problems than are kept; how bad the worst of those is is known.
-pub(crate) fn too_many(more: usize, worst: Severity, at: Span) -> Diagnostic {
+/// What is said at the end about a source with more problems than are kept; `worst` is how bad the worst of those is.
+pub(crate) fn too_many(more: usize, most: usize, worst: Severity, at: Span) -> Diagnostic {
     let message = format!("there are {more} more problems in this source");
     Diagnostic { severity: worst, ..Diagnostic::error(Code::TooManyProblems, at, message) }
-        .primary(format!("kirk shows the first {MAX_PER_SOURCE} it finds"))
+        .primary(format!("kirk shows the first {most} it finds"))
         .help("Put the first ones right and look again: later problems often follow from earlier ones.")
 }
 
@@ -31,6 +30,20 @@ impl Limits {
             Limits::Duration => ["the lower bound", "the upper bound"],
             Limits::ObservationDelay => ["the shortest observation delay", "the longest observation delay"],
             Limits::Wait => ["the shortest wait", "the longest wait"],
+        }
+    }
+}
+
+impl Role {
+    /// What such a number is called in a sentence.
+    fn words(self) -> &'static str {
+        match self {
+            Role::Lower(limits) => limits.words()[0],
+            Role::Upper(limits) => limits.words()[1],
+            Role::Count => "the number of repetitions",
+            Role::Named => "this value",
+            Role::Operand => "part of a calculation",
+            Role::Argument => "this argument",
         }
     }
 }

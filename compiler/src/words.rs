@@ -140,6 +140,17 @@ impl Word {
         format!("({}{})", self.name, parts.collect::<String>())
     }
 
+    /// What stands in the form behind the word, keywords and their values each by itself.
+    pub fn pieces(&self) -> impl Iterator<Item = &'static str> {
+        let apart = |part: Part| part == Part::Keywords;
+        self.parts.iter().flat_map(move |&(text, part)| text.split(move |c| c == ' ' && apart(part)))
+    }
+
+    /// True if the last part may be there again and again.
+    pub fn repeats(&self) -> bool {
+        self.parts.last().is_some_and(|(text, _)| text.ends_with("..."))
+    }
+
     /// The form to be filled in, without the parentheses around it.
     pub fn snippet(&self) -> String {
         format!("{}{}", self.name, self.filled)

@@ -13,6 +13,7 @@ use kirk_compiler::{Code, Diagnostic, Front, Options, Severity, Source, Span, Sy
 
 use crate::lines::Lines;
 use crate::rename::edited;
+use crate::wording::Problem;
 
 /// What is known of a text before anything is unfolded.
 #[derive(Clone, Debug)]
@@ -163,13 +164,7 @@ pub fn analyse_among(text: String, companions: &Companions) -> (Analysis, Unjudg
 fn errors_elsewhere(diagnostics: &[Diagnostic], places: &[Span]) -> Vec<Diagnostic> {
     let first = |(index, place): (usize, &Span)| {
         let is_error = |d: &&Diagnostic| d.severity == Severity::Error && d.span.source as usize == index + 1;
-        let error = diagnostics.iter().find(is_error)?;
-        let warning = Diagnostic::warning(error.code, *place, format!("in this file, {}", error.message));
-        Some(
-            warning
-                .primary("there is no verdict before it is put right")
-                .label(error.span, error.primary.clone()),
-        )
+        diagnostics.iter().find(is_error).map(|error| Problem::Broken(error).at(*place))
     };
     places.iter().enumerate().filter_map(first).collect()
 }

@@ -2,9 +2,10 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use kirk_compiler::{Code, Companion, Diagnostic, Source, companions};
+use kirk_compiler::{Companion, Diagnostic, Source, companions};
 
 use crate::analysis::Companions;
+use crate::wording::Problem;
 
 /// Reads what is not open in the editor; `None` if it cannot be read.
 pub type ReadFile = Box<dyn Fn(&Path) -> Option<String> + Send>;
@@ -31,12 +32,7 @@ pub(crate) fn gather(
             found.places.push(span);
             found.order.push(found.others.len());
         } else {
-            let message = format!("`{name}` cannot be read");
-            missing.push(
-                Diagnostic::error(Code::CannotRead, span, message)
-                    .primary("named here as one program with this file")
-                    .help("The name is relative to the folder of this file."),
-            );
+            missing.push(Problem::Unreadable(&name).at(span));
         }
     }
     if !found.order.contains(&0) {

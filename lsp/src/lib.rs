@@ -44,6 +44,7 @@ mod signature;
 mod transport;
 mod view;
 mod waits;
+mod wording;
 
 pub use actions::{Action, actions};
 pub use analysis::{Analysis, Companions, Unjudged, analyse, analyse_among};

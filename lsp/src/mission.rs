@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 
 use kirk_compiler::episode::{Episode, Kind};
 use kirk_compiler::problem::Problems;
-use kirk_compiler::{Code, Diagnostic, Explain, Lowered, Source, Span, Unfolded, events_of, unfold};
+use kirk_compiler::{Diagnostic, Explain, Lowered, Source, Span, Unfolded, events_of, too_large, unfold};
 use kirk_network::EventId;
+use kirk_network::stnu::TooLarge;
 use kirk_network::windows::{Window, windows};
 
 use crate::analysis::Unjudged;
@@ -79,10 +80,7 @@ fn mission(root: &Episode, lowered: Lowered, sources: &[Source]) -> (Mission, Ve
     let (verdict, diagnostics) = match Explain::of(&lowered, sources).all() {
         Ok(told) if told.is_empty() => (Judgement::Controllable, told),
         Ok(told) => (Judgement::Uncontrollable, told),
-        Err(error) => {
-            let diagnostic = Diagnostic::error(Code::NumbersTooLarge, lowered.entry, error.to_string());
-            (Judgement::TooLarge, vec![diagnostic])
-        }
+        Err(TooLarge) => (Judgement::TooLarge, vec![too_large(lowered.entry)]),
     };
     let mut at: BTreeMap<Span, Vec<usize>> = BTreeMap::new();
     let mut occurrences = Vec::new();

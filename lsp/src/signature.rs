@@ -30,13 +30,14 @@ pub fn signature(analysis: &Analysis, offset: u32) -> Option<Signature> {
         let head = cursor.head(level);
         let part = open.before.saturating_sub(1 + usize::from(level > 0));
         let called = analysis.program.programs.iter().find(|program| program.name.name == head);
-        let (label, about) = match (called, word(&head)) {
-            (Some(called), _) => (called.shape(), program(analysis.source_of(called.span), called)),
-            (None, Some(word)) => (word.shape(), word.about.to_string()),
+        let ((label, parameters), repeats, about) = match (called, word(&head)) {
+            (Some(called), _) => {
+                let names = called.parameters.iter().map(|parameter| parameter.name.as_str());
+                (written(&head, names), false, program(analysis.source_of(called.span), called))
+            }
+            (None, Some(word)) => (written(word.name, word.pieces()), word.repeats(), word.about.to_string()),
             (None, None) => continue,
         };
-        let parameters = parts(&label);
-        let repeats = parameters.last().is_some_and(|(start, end)| label[*start..*end].ends_with("..."));
         let active = match parameters.len() {
             0 => None,
             count if part < count => Some(part),
@@ -48,21 +49,14 @@ pub fn signature(analysis: &Analysis, offset: u32) -> Option<Signature> {
     None
 }
 
-/// The parts of a shape after its head: what blanks separate outside of inner parentheses.
-fn parts(shape: &str) -> Vec<(usize, usize)> {
-    let inner = shape.len() - 1;
-    let mut found = Vec::new();
-    let (mut depth, mut start) = (0_usize, 1);
-    for (at, c) in shape.char_indices().skip(1) {
-        match c {
-            '(' => depth += 1,
-            ')' if depth > 0 => depth -= 1,
-            _ => {}
-        }
-        if depth == 0 && (c == ' ' || at == inner) {
-            found.push((start, at));
-            start = at + 1;
-        }
+/// A form as it is written, and which bytes of that its parts are.
+fn written<'a>(head: &str, parts: impl Iterator<Item = &'a str>) -> (String, Vec<(usize, usize)>) {
+    let mut label = format!("({head}");
+    let mut places = Vec::new();
+    for part in parts {
+        label.push(' ');
+        places.push((label.len(), label.len() + part.len()));
+        label.push_str(part);
     }
-    found.into_iter().skip(1).filter(|(start, end)| start < end).collect()
+    (label + ")", places)
 }

@@ -4,8 +4,8 @@ use kirk_network::{Bound, Duration};
 
 use super::problem::Problem;
 use super::{Analyser, Variable};
-use crate::ast::{self, Ident, Limits};
-use crate::evaluate::{self, Reversed, Role, Written};
+use crate::ast::{self, Ident, Limits, Role};
+use crate::evaluate::{self, Reversed, Written};
 use crate::source::Span;
 use crate::typed::{Amount, AmountValue, Bounds, Timing};
 

@@ -4,9 +4,9 @@ use kirk_network::{Bound, Duration};
 
 use super::problem::Problem;
 use super::{Expander, Frame};
-use crate::ast::{Limits, Value, ValueKind};
+use crate::ast::{Limits, Role, Value, ValueKind};
 use crate::episode::Interval;
-use crate::evaluate::{self, Reversed, Role, Written};
+use crate::evaluate::{self, Reversed, Written};
 use crate::source::Span;
 use crate::typed::{Amount, AmountValue, Bounds, Expression, ExpressionKind};
 

@@ -2,17 +2,16 @@
 
 use kirk_network::{Duration, ParseDurationError};
 
-use super::problem::Number;
 use super::{ident, slips};
-use crate::ast::{Amount, AmountKind};
+use crate::ast::{Amount, AmountKind, Role};
 use crate::calculate::Operator;
 use crate::form::{Form, FormKind, Symbol};
 use crate::problem::Problems;
 use crate::words::unit;
 
 /// Reads a duration or another number.
-pub(super) fn amount(form: &Form, what: Number, problems: &mut Problems) -> Amount {
-    Amount { kind: kind(form, what, 1_000_000, problems), span: form.span }
+pub(super) fn amount(form: &Form, role: Role, problems: &mut Problems) -> Amount {
+    Amount { kind: kind(form, role, 1_000_000, problems), span: form.span }
 }
 
 /// True if this is a calculation or a number with a unit: a list that stands for a number.
@@ -20,11 +19,11 @@ pub(super) fn is_calculation(form: &Form) -> bool {
     form.call().is_some_and(|(word, _)| Operator::of(word).is_some() || unit(word).is_some())
 }
 
-fn kind(form: &Form, what: Number, unit: i64, problems: &mut Problems) -> AmountKind {
+fn kind(form: &Form, role: Role, unit: i64, problems: &mut Problems) -> AmountKind {
     match &form.kind {
         FormKind::Number(text) => match number(text, unit) {
             Ok(value) => return AmountKind::Number(value),
-            Err(error) => problems.push(slips::amount::inexact(form, what, text, error)),
+            Err(error) => problems.push(slips::amount::inexact(form, role, text, error)),
         },
         FormKind::Keyword(word) if matches!(word.as_str(), "infinity" | "inf" | "+infinity") => {
             return AmountKind::Infinite;
@@ -34,29 +33,29 @@ fn kind(form: &Form, what: Number, unit: i64, problems: &mut Problems) -> Amount
                 return AmountKind::Named(name);
             }
         }
-        FormKind::List(_) => match calculation(form, what, problems) {
+        FormKind::List(_) => match calculation(form, role, problems) {
             Some(kind) => return kind,
-            None => problems.push(slips::amount::no_calculation(form, what)),
+            None => problems.push(slips::amount::no_calculation(form, role)),
         },
         FormKind::Error => {}
-        _ => problems.push(slips::amount::no_number(form, what)),
+        _ => problems.push(slips::amount::no_number(form, role)),
     }
     AmountKind::Error
 }
 
 /// `(minutes 5)`, `(+ x 1)`; `None` if it is neither.
-fn calculation(form: &Form, what: Number, problems: &mut Problems) -> Option<AmountKind> {
+fn calculation(form: &Form, role: Role, problems: &mut Problems) -> Option<AmountKind> {
     let (word, rest) = form.call()?;
     if let Some(operator) = Operator::of(word) {
         let (least, most) = operator.takes();
-        let part = |part: &Form| amount(part, Number::PartOfCalculation, problems);
+        let part = |part: &Form| amount(part, Role::Operand, problems);
         return (least..=most)
             .contains(&rest.len())
             .then(|| AmountKind::Calculation(operator, rest.iter().map(part).collect()));
     }
     let (name, micros) = unit(word)?;
     let [inner] = rest else { return None };
-    Some(match kind(inner, what, micros, problems) {
+    Some(match kind(inner, role, micros, problems) {
         found @ (AmountKind::Named(_) | AmountKind::Unit(..) | AmountKind::Calculation(..)) => {
             AmountKind::Unit(name, micros, Box::new(Amount { kind: found, span: inner.span }))
         }

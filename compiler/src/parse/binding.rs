@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use super::amount::amount;
 use super::body::{argument, bodies};
-use super::problem::{Missing, Named, Number, Problem};
+use super::problem::{Missing, Named, Problem};
 use super::{ident, slips};
-use crate::ast::{Argument, Body, Dotimes, Ident, Let};
+use crate::ast::{Argument, Body, Dotimes, Ident, Let, Role};
 use crate::form::Form;
 use crate::problem::Problems;
 use crate::source::Span;
@@ -73,7 +73,7 @@ pub(super) fn dotimes(form: &Form, operator: &Form, rest: &[Form], problems: &mu
             return None;
         }
     };
-    let count = amount(count, Number::Repetitions, problems);
+    let count = amount(count, Role::Count, problems);
     if body.is_empty() {
         problems.push(Problem::Missing { at: operator.span, what: Missing::BodyOfDotimes });
     }

@@ -2,9 +2,9 @@
 
 use super::amount::{amount, is_calculation, is_name, number};
 use super::options::{flag, options};
-use super::problem::{Number, Problem};
+use super::problem::Problem;
 use super::{binding, ident, label, slips};
-use crate::ast::{Argument, Body, Bounds, Call, Group, Limits, Value, ValueKind, Wait, Within};
+use crate::ast::{Argument, Body, Bounds, Call, Group, Limits, Role, Value, ValueKind, Wait, Within};
 use crate::form::{Form, FormKind, text_of};
 use crate::problem::Problems;
 use crate::source::Span;
@@ -62,7 +62,7 @@ pub(super) fn arguments(forms: &[Form], problems: &mut Problems) -> Vec<Argument
 /// An argument: a number to calculate, or a value.
 pub(super) fn argument(form: &Form, problems: &mut Problems) -> Argument {
     match form.is_error() || is_calculation(form) || slips::amount::is_clock(form) {
-        true => Argument::Amount(amount(form, Number::Argument, problems)),
+        true => Argument::Amount(amount(form, Role::Argument, problems)),
         false => Argument::Value(value(form)),
     }
 }
@@ -163,8 +163,8 @@ pub(super) fn interval(
     span: Span,
     problems: &mut Problems,
 ) -> Bounds {
-    let lower = lower.map(|form| amount(form, Number::Lower(limits), problems));
-    let upper = upper.map(|form| amount(form, Number::Upper(limits), problems));
+    let lower = lower.map(|form| amount(form, Role::Lower(limits), problems));
+    let upper = upper.map(|form| amount(form, Role::Upper(limits), problems));
     Bounds { lower, upper, span }
 }
 

@@ -3,7 +3,7 @@
 //! Forms and names are as they are written. What was probably meant in the place of something is called `near`.
 
 use super::slips::elsewhere::Instead;
-use crate::ast::{Ident, Limits};
+use crate::ast::{Ident, Role};
 use crate::calculate::Operator;
 use crate::form::Form;
 use crate::source::Span;
@@ -40,7 +40,7 @@ pub(crate) enum Problem<'a> {
     /// A package that is entered and not defined.
     UnknownPackage { form: Span, at: Span, name: &'a str, near: Option<&'a str> },
     /// Something that is no number. What it is for is known.
-    Number { form: &'a Form, what: Number, slip: NumberSlip<'a> },
+    Number { form: &'a Form, role: Role, slip: NumberSlip<'a> },
     /// A slip in a `let` or `dotimes`.
     Binding(BindingSlip<'a>),
     /// A slip in a body.
@@ -139,17 +139,6 @@ pub(crate) enum ConditionSlip<'a> {
     Parts(&'a str),
     /// Neither `at :start`, `at :end` nor `over :all`.
     Time { word: &'a str, near: Option<&'static str> },
-}
-
-/// What a number is for.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Number {
-    Value,
-    PartOfCalculation,
-    Argument,
-    Repetitions,
-    Lower(Limits),
-    Upper(Limits),
 }
 
 /// What stands in the place of a number.

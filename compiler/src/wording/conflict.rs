@@ -1,5 +1,6 @@
 //! What is said about conflicts: in one message, and step by step.
 
+use kirk_network::stnu::TooLarge;
 use kirk_network::walk::Step;
 use kirk_network::{Bound, Conflict, Duration, Part, Share};
 
@@ -45,6 +46,11 @@ pub(crate) fn told(problem: &Problem<'_>) -> Diagnostic {
         problem.enough.unwrap_or_default().iter().filter_map(Changed::suggestion).collect();
     let help = help(problem);
     if help.is_empty() { diagnostic } else { diagnostic.help(help.join("\n")) }
+}
+
+/// What is said where no verdict is to be had, as the durations add up to too much.
+pub fn too_large(at: Span) -> Diagnostic {
+    Diagnostic::error(Code::NumbersTooLarge, at, TooLarge.to_string())
 }
 
 /// Says that there are so many more conflicts than are told; `at_least`, if nobody counted further.

@@ -1,10 +1,10 @@
 //! What is said about numbers and intervals.
 
-use crate::ast::{Ident, Limits, Value, ValueKind};
+use crate::ast::{Ident, Limits, Role, Value, ValueKind};
 use crate::calculate::NoResult;
 use crate::code::Code;
 use crate::diagnostic::{Diagnostic, Edit};
-use crate::evaluate::{BadCount, INFINITY, MAX_COUNT, Problem, Reversed, Role, Written};
+use crate::evaluate::{BadCount, INFINITY, MAX_COUNT, Problem, Reversed, Written};
 use crate::form::clip;
 use crate::source::Span;
 
@@ -28,7 +28,7 @@ impl From<Problem> for Diagnostic {
                         "Every repetition is unfolded before the mission starts. Is this a number of seconds?",
                     ),
                 };
-                let message = format!("{} is {number}, which is {what}", called(Role::Count));
+                let message = format!("{} is {number}, which is {what}", Role::Count.words());
                 Diagnostic::error(code, span, message)
                     .primary("a whole number was expected, and not a large one")
                     .help(help)
@@ -50,7 +50,7 @@ impl From<Problem> for Diagnostic {
                     .primary("there is no result")
             }
             Problem::InfiniteLower { role, span } => {
-                Diagnostic::error(Code::InfiniteLower, span, format!("{} is infinite", called(role)))
+                Diagnostic::error(Code::InfiniteLower, span, format!("{} is infinite", role.words()))
                     .primary("this would never be over")
                     .help("Only an upper bound may be `:infinity`.")
             }
@@ -58,7 +58,7 @@ impl From<Problem> for Diagnostic {
                 let problem = Diagnostic::error(
                     Code::Negative,
                     span,
-                    format!("{} is negative", called(role)),
+                    format!("{} is negative", role.words()),
                 )
                 .primary(format!("{value} s"))
                 .help(
@@ -94,7 +94,7 @@ fn reversed(problem: &Reversed) -> Diagnostic {
 }
 
 fn not_a_number(role: Role, used: Span, variable: Option<String>, value: &Value) -> Diagnostic {
-    let what = called(role);
+    let what = role.words();
     let in_calculation = role == Role::Operand;
     let message = match (&variable, &value.kind) {
         (_, ValueKind::Name(_, name)) if in_calculation => {
@@ -127,15 +127,4 @@ fn with_definitions(problem: Diagnostic, names: &[Ident]) -> Diagnostic {
     names.iter().fold(problem, |problem, name| {
         problem.label(name.span, format!("`{}` is defined here", clip(&name.name)))
     })
-}
-
-/// What a number is called in a sentence.
-fn called(role: Role) -> &'static str {
-    match role {
-        Role::Lower(limits) => limits.words()[0],
-        Role::Upper(limits) => limits.words()[1],
-        Role::Count => "the number of repetitions",
-        Role::Named => "this value",
-        Role::Operand => "part of a calculation",
-    }
 }

@@ -88,7 +88,7 @@ impl From<Problem<'_>> for Diagnostic {
                     .primary("a value was expected after this option")
             }
             Problem::UnknownPackage { form, at, name, near } => unknown_package(form, at, name, near),
-            Problem::Number { form, what, slip } => number::told(form, what, slip),
+            Problem::Number { form, role, slip } => number::told(form, role, slip),
             Problem::Binding(slip) => binding::told(slip),
             Problem::Body(slip) => body::told(slip),
             Problem::Declaration(slip) => declaration::told(slip),

@@ -2,16 +2,17 @@
 
 use kirk_network::ParseDurationError;
 
+use crate::ast::Role;
 use crate::calculate::Operator;
 use crate::form::{Form, FormKind};
 use crate::nearest::nearest;
 use crate::parse::amount::number;
-use crate::parse::problem::{Calculation, Number, NumberSlip, Problem, Suffixed};
+use crate::parse::problem::{Calculation, NumberSlip, Problem, Suffixed};
 use crate::words::UNITS;
 use crate::words::unit;
 
 /// Something that is no number.
-pub(in crate::parse) fn no_number(form: &Form, what: Number) -> Problem<'_> {
+pub(in crate::parse) fn no_number(form: &Form, role: Role) -> Problem<'_> {
     let slip = match &form.kind {
         FormKind::String(text)
             if text.starts_with(|c: char| c.is_ascii_digit()) && number(text, 1_000_000).is_ok() =>
@@ -28,11 +29,11 @@ pub(in crate::parse) fn no_number(form: &Form, what: Number) -> Problem<'_> {
         },
         _ => NumberSlip::Other,
     };
-    Problem::Number { form, what, slip }
+    Problem::Number { form, role, slip }
 }
 
 /// A list that is neither a calculation nor a number with a unit.
-pub(in crate::parse) fn no_calculation(form: &Form, what: Number) -> Problem<'_> {
+pub(in crate::parse) fn no_calculation(form: &Form, role: Role) -> Problem<'_> {
     let slip = match form.call() {
         None => infix(form).unwrap_or(NumberSlip::Other),
         Some(("min", [minutes])) => NumberSlip::Min(minutes),
@@ -44,7 +45,7 @@ pub(in crate::parse) fn no_calculation(form: &Form, what: Number) -> Problem<'_>
             (None, None) => NumberSlip::Unit { word, near: near(word) },
         },
     };
-    Problem::Number { form, what, slip }
+    Problem::Number { form, role, slip }
 }
 
 /// The unit or the operator that is meant by a word.
@@ -108,14 +109,14 @@ pub(in crate::parse) fn is_clock(form: &Form) -> bool {
 /// A number that would have to be rounded, or is larger than a duration can be.
 pub(in crate::parse) fn inexact<'a>(
     form: &'a Form,
-    what: Number,
+    role: Role,
     text: &'a str,
     error: ParseDurationError,
 ) -> Problem<'a> {
     let slip = match error {
         ParseDurationError::TooPrecise => NumberSlip::NotExact(text),
         ParseDurationError::TooLarge => NumberSlip::TooLarge,
-        ParseDurationError::NotANumber => return no_number(form, what),
+        ParseDurationError::NotANumber => return no_number(form, role),
     };
-    Problem::Number { form, what, slip }
+    Problem::Number { form, role, slip }
 }

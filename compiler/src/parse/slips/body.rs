@@ -1,12 +1,12 @@
 //! Body forms as they are written elsewhere, operators misspelt, options and constraints in the wrong place.
 
-use crate::ast::{Bounds, Limits};
+use crate::ast::{Bounds, Limits, Role};
 use crate::form::{Form, FormKind};
 use crate::nearest::nearest;
 use crate::parse::amount::{amount, is_calculation};
 use crate::parse::body::{LIMITS, bounds, is_constraint, limits};
 use crate::parse::options::pairs;
-use crate::parse::problem::{BodySlip, Missing, Number, Problem};
+use crate::parse::problem::{BodySlip, Missing, Problem};
 use crate::problem::Problems;
 use crate::words::Position;
 
@@ -160,11 +160,11 @@ pub(in crate::parse) fn no_delay(form: &Form, operator: &Form, rest: &[Form], pr
             Problem::Body(BodySlip::WaitByKeywords { at, delay, bounds: pairs(rest, LIMITS) })
         }
         [both] => {
-            let what = Number::Lower(Limits::Wait);
+            let role = Role::Lower(Limits::Wait);
             match super::amount::range(both) {
-                Some(slip) => Problem::Number { form: both, what, slip },
+                Some(slip) => Problem::Number { form: both, role, slip },
                 None => {
-                    amount(both, what, problems);
+                    amount(both, role, problems);
                     return;
                 }
             }

@@ -1,15 +1,16 @@
 //! What is said about numbers that are none.
 
 use super::{described, wrong};
+use crate::ast::Role;
 use crate::calculate::Operator;
 use crate::code::Code;
 use crate::diagnostic::{Diagnostic, Edit};
 use crate::form::{Form, clip, text_of};
-use crate::parse::problem::{Calculation, Number, NumberSlip, Suffixed};
+use crate::parse::problem::{Calculation, NumberSlip, Suffixed};
 use crate::source::Span;
 
-pub(super) fn told(form: &Form, what: Number, slip: NumberSlip) -> Diagnostic {
-    let what = named(what);
+pub(super) fn told(form: &Form, role: Role, slip: NumberSlip) -> Diagnostic {
+    let what = if role == Role::Operand { "part of this calculation" } else { role.words() };
     let at = form.span;
     match slip {
         NumberSlip::Other => no_number(form, what),
@@ -53,17 +54,6 @@ pub(super) fn told(form: &Form, what: Number, slip: NumberSlip) -> Diagnostic {
         NumberSlip::TooLarge => Diagnostic::error(Code::TooLarge, at, format!("{what} is too large"))
             .primary("more than 10 billion seconds")
             .help("For \"no limit\" leave the bound out or write `:infinity`."),
-    }
-}
-
-fn named(what: Number) -> &'static str {
-    match what {
-        Number::Value => "this value",
-        Number::PartOfCalculation => "part of this calculation",
-        Number::Argument => "this argument",
-        Number::Repetitions => "the number of repetitions",
-        Number::Lower(limits) => limits.words()[0],
-        Number::Upper(limits) => limits.words()[1],
     }
 }
 

@@ -40,7 +40,7 @@ pub use replan::Adoption;
 use crate::agenda::Agenda;
 use crate::cause::Cause;
 use crate::execution::How;
-use crate::knowledge::{Knowledge, Known, heard_against, heard_now};
+use crate::knowledge::{Knowledge, Known, heard_now};
 use crate::measured::Measured;
 use crate::plan::Plan;
 use why::Causes;
@@ -250,15 +250,14 @@ impl Dispatcher {
         let nearest = arrived.max(earliest).min(latest.unwrap_or(Time::MAX));
         let slack = self.settings.lead.saturating_add(self.settings.lateness);
         let heard = if nearest.saturating_since(arrived).abs() <= slack { nearest } else { arrived };
-        let evidence = heard_now(&link, heard);
-        if before.and(evidence).is_empty() || before.earliest > heard {
+        if self.knowledge.rules_out(&self.network, event, heard) {
             // Who was told when it was to come, and that it has not, is told the same again.
             let by_model = self.knowledge.observed_by(&self.network, event).filter(|&by| by < arrived);
             return Reception::Impossible { earliest: Some(earliest), latest: by_model.or(latest) };
         }
         self.version += 1;
         self.knowledge.hear(event, heard);
-        self.knowledge.add_evidence(event, evidence);
+        self.knowledge.add_evidence(event, heard_now(&link, heard));
         let place = self.reduction.places[event.index()];
         let window = self.active.iter().copied().find(|&(_, link)| {
             self.reduction.stnu.links[link as usize].contingent == place.node && place.heard_by == Some(event)
@@ -277,14 +276,12 @@ impl Dispatcher {
     /// activation has not happened is not taken. Nothing may be in flight.
     pub fn handle_impossible(&mut self, arrived: Time, event: EventId) {
         self.now = self.now.max(arrived);
-        let Some(link) = self.network.link_of(event).map(|link| self.network.contingents()[link]) else {
+        if self.network.link_of(event).is_none()
+            || !self.knowledge.hear_against(&self.network, event, arrived)
+        {
             return;
-        };
-        let Some(activation) = self.happened(link.from) else { return };
-        let evidence = heard_against(&link, activation, arrived);
+        }
         self.version += 1;
-        self.knowledge.hear(event, arrived);
-        self.knowledge.overrule(event, evidence);
         (self.stale, self.broken) = (true, true);
     }
 
@@ -456,8 +453,9 @@ impl Dispatcher {
         self.active.retain(|&(_, link)| self.reduction.stnu.links[link as usize].contingent != node);
         let place = self.reduction.places[event.index()];
         if how == How::Imagined {
-            // Had it happened earlier, its news would have come.
-            self.knowledge.add_evidence(event, whereabouts(&place, time));
+            // Had it happened earlier, its news would have come. That it did not happen later is the model's, which may yet be broken.
+            let Interval { earliest, .. } = whereabouts(&place, time);
+            self.knowledge.add_evidence(event, Interval::new(earliest, Time::MAX));
         }
         self.fix(event, time, how, self.cause_of_acting(node, event, time, how));
         self.start(node, time);

@@ -147,8 +147,61 @@ impl Knowledge {
         known.settled = true;
     }
 
+    /// News of an event arrived that the model rules out: the event happened when its delay or its link says, one of which is wrong;
+    /// or as both say, and what follows it did not. False if what it follows has not happened.
+    pub(crate) fn hear_against(&mut self, network: &Network, event: EventId, arrived: Time) -> bool {
+        let link = link_to(network, event);
+        let heard = heard_now(link, arrived);
+        let activation = |knowledge: &Knowledge| knowledge.happened(network, link.from);
+        let Some(before) = activation(self) else { return false };
+        self.hear(event, arrived);
+        let own = before.later(link.lower, link.upper).and(heard);
+        if !own.is_empty() {
+            self.break_links_after(network, event, own);
+            self.add_evidence(event, heard);
+            return true;
+        }
+        // By its delay it happened no later than this, or its delay is wrong and it happened by now: what it follows is before both.
+        let start = self.of(self.root(event)).fixed.map_or(arrived, |fixed| fixed.time);
+        self.happened_by(network, link.from, heard.latest.max(start), arrived);
+        let evidence = heard_against(link, activation(self).unwrap_or(before), arrived);
+        self.overrule(event, evidence);
+        true
+    }
+
+    /// An event happened in an interval; the links from it that do not go with that are broken.
+    fn break_links_after(&mut self, network: &Network, event: EventId, within: Interval) {
+        for child in self.tree(event).to_vec() {
+            let ContingentLink { from, lower, upper, .. } = *link_to(network, child);
+            let Some(known) = self.happened(network, child).filter(|_| from == event) else { continue };
+            if known.earlier(lower, upper).and(within).is_empty() {
+                self.overrule(child, Interval::new(known.earliest.min(within.earliest), known.latest));
+            }
+        }
+    }
+
+    /// True if the model rules out news of an event that arrives now: by when it happened, or can have by now, and how late it is
+    /// heard.
+    pub(crate) fn rules_out(&self, network: &Network, event: EventId, now: Time) -> bool {
+        let evidence = heard_now(link_to(network, event), now);
+        self.happened(network, event)
+            .is_none_or(|before| before.and(evidence).is_empty() || before.earliest > now)
+    }
+
+    /// An event may have happened by a time already, whatever the model says, and has by now, and so has all that it follows.
+    fn happened_by(&mut self, network: &Network, event: EventId, time: Time, now: Time) {
+        let Some(within) = self.happened(network, event) else { return };
+        if event == self.root(event) || within.earliest <= time {
+            return;
+        }
+        let from = link_to(network, event).from;
+        self.happened_by(network, from, time, now);
+        let earliest = self.happened(network, from).map_or(time, |within| within.earliest);
+        self.overrule(event, Interval::new(earliest, within.latest.min(now)));
+    }
+
     /// The event happened in this interval, whatever the model says.
-    pub(crate) fn overrule(&mut self, event: EventId, evidence: Interval) {
+    fn overrule(&mut self, event: EventId, evidence: Interval) {
         let known = self.change(event);
         known.evidence = Some(evidence);
         known.settled = true;
@@ -222,18 +275,27 @@ impl Knowledge {
     }
 
     /// The intervals of the contingent events of a tree that began at `start`.
+    ///
+    /// Of a link that is broken the order is left, and so it is of the links above it: which of them is broken nobody knows.
     fn intervals(&self, network: &Network, root: EventId, start: Time) -> Vec<Interval> {
         let tree = &self.trees[root.index()];
         let link = |event: EventId| link_to(network, event);
-        // Up: what the evidence of an event and of all that follows it allows.
+        // Up: what the evidence of an event and of all that follows it allows, and by when it was before what follows it.
         let evidence = tree.iter().map(|&event| self.of(event).evidence.unwrap_or(Interval::ANYTIME));
         let mut allowed: Vec<Interval> = evidence.collect();
+        let mut by = vec![Time::MAX; tree.len()];
+        let mut is_broken = false;
         for at in (0..tree.len()).rev() {
             let ContingentLink { from, lower, upper, .. } = *link(tree[at]);
-            if from != root && !self.of(tree[at]).overruled {
-                let before = allowed[at].earlier(lower, upper);
-                let parent = &mut allowed[self.number[from.index()] as usize];
-                *parent = parent.and(before);
+            let parent = self.number[from.index()] as usize;
+            let overruled = self.of(tree[at]).overruled;
+            is_broken |= overruled;
+            if from != root {
+                by[parent] = by[parent].min(by[at]);
+                match overruled {
+                    true => by[parent] = by[parent].min(allowed[at].latest),
+                    false => allowed[parent] = allowed[parent].and(allowed[at].earlier(lower, upper)),
+                }
             }
         }
         // Down: what the parent and the link allow of that.
@@ -241,13 +303,12 @@ impl Knowledge {
             let ContingentLink { from, lower, upper, .. } = *link(tree[at]);
             let parent =
                 if from == root { Interval::at(start) } else { allowed[self.number[from.index()] as usize] };
-            let here = &mut allowed[at];
-            if self.of(tree[at]).overruled {
-                // All that is left of the model: it did not happen before what it follows.
-                here.earliest = here.earliest.max(parent.earliest).min(here.latest);
-            } else {
-                *here = here.and(parent.later(lower, upper));
-            }
+            let here = Interval::new(allowed[at].earliest, allowed[at].latest.min(by[at]));
+            let by_link = here.and(parent.later(lower, upper));
+            allowed[at] = match self.of(tree[at]).overruled || is_broken && by_link.is_empty() {
+                true => Interval::new(here.earliest.max(parent.earliest).min(here.latest), here.latest),
+                false => by_link,
+            };
         }
         allowed
     }
@@ -261,7 +322,7 @@ pub(crate) fn heard_now(link: &ContingentLink, now: Time) -> Interval {
 
 /// The interval in which an event happened whose news the model rules out, if its activation happened in another: what the
 /// news proves, if either the duration or the delay was other than the model says and nobody knows which.
-pub(crate) fn heard_against(link: &ContingentLink, activation: Interval, now: Time) -> Interval {
+fn heard_against(link: &ContingentLink, activation: Interval, now: Time) -> Interval {
     let heard = heard_now(link, now);
     let by_link = activation.later(link.lower, link.upper);
     if by_link.latest < heard.earliest {

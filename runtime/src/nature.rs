@@ -40,6 +40,13 @@ pub struct Deed {
     pub observed: Option<Time>,
 }
 
+/// All of the model is kept.
+const ALL: usize = 0;
+/// All of it but the links of what is heard of.
+const NOT_THE_HEARD: usize = 1;
+/// No more of it than the order.
+const ORDER: usize = 2;
+
 /// Decides, for every tree of contingent links, when all its events happen once its root is executed.
 #[derive(Debug)]
 pub struct Nature<'a> {
@@ -50,11 +57,10 @@ pub struct Nature<'a> {
     what_if: bool,
     /// For each event, when its news must arrive.
     observations: Vec<Option<Time>>,
-    /// For each event, when it or something that follows it is heard of first: it happens no later.
-    by: Vec<Time>,
     children: Vec<Vec<EventId>>,
-    /// Where the observations require each event to be, and where Nature has put it.
-    required: Vec<Interval>,
+    /// Where the observations require each event to be, by how much of the model is kept.
+    required: [Vec<Interval>; 3],
+    /// Where Nature has put each event.
     truth: Vec<Time>,
 }
 
@@ -81,9 +87,8 @@ impl<'a> Nature<'a> {
             seed,
             what_if: false,
             observations: by_event,
-            by: vec![Time::MAX; count],
             children,
-            required: vec![Interval::ANYTIME; count],
+            required: std::array::from_fn(|_| vec![Interval::ANYTIME; count]),
             truth: vec![Time::ZERO; count],
         }
     }
@@ -105,9 +110,9 @@ impl<'a> Nature<'a> {
             tree.extend(&self.children[tree[at].index()]);
             at += 1;
         }
-        self.require(&tree, root);
         self.truth[root.index()] = time;
-        if let Some(&early) = tree.iter().find(|event| self.by[event.index()] < time) {
+        self.require(&tree, root);
+        if let Some(&early) = tree.iter().find(|event| self.required[ORDER][event.index()].latest < time) {
             return Err(self.first_impossible(early, root, time));
         }
         tree.into_iter().map(|event| self.act(event, root, time)).collect()
@@ -115,18 +120,28 @@ impl<'a> Nature<'a> {
 
     /// Where the observations of each event and of all that follows it require it to be. Children come after parents.
     fn require(&mut self, tree: &[EventId], root: EventId) {
+        let start = self.truth[root.index()];
         for &event in tree {
-            self.required[event.index()] = self.told(event);
-            self.by[event.index()] = self.observations[event.index()].unwrap_or(Time::MAX);
+            let (told, heard) = (self.told(event), self.observations[event.index()]);
+            for kept in [ALL, NOT_THE_HEARD, ORDER] {
+                self.required[kept][event.index()] = told;
+            }
+            // What is heard of sooner than its delay allows has happened by then.
+            if let Some(heard) = heard.filter(|_| told.latest < start) {
+                self.required[ORDER][event.index()] = Interval::new(Time::MIN, heard);
+            }
         }
         for &event in tree.iter().rev() {
             let link = self.link(event);
-            if link.from != root {
-                let before = self.required[event.index()].earlier(link.lower, link.upper);
-                let parent = &mut self.required[link.from.index()];
+            let is_heard = self.observations[event.index()].is_some();
+            for kept in [ALL, NOT_THE_HEARD, ORDER].into_iter().filter(|_| link.from != root) {
+                let here = self.required[kept][event.index()];
+                let before = match kept == ALL || kept == NOT_THE_HEARD && !is_heard {
+                    true => here.earlier(link.lower, link.upper),
+                    false => Interval::new(Time::MIN, here.latest),
+                };
+                let parent = &mut self.required[kept][link.from.index()];
                 *parent = parent.and(before);
-                let by = self.by[event.index()].min(self.by[link.from.index()]);
-                self.by[link.from.index()] = by;
             }
         }
     }
@@ -137,22 +152,25 @@ impl<'a> Nature<'a> {
         observed.map_or(Interval::ANYTIME, |time| heard_now(&self.link(event), time))
     }
 
-    /// Where an event can be: by the model if that goes with all news, else with its own, else by its own news against the model.
+    /// Where an event can be: by the model if that goes with all news, else with as much of it as can be kept.
     fn possible(&self, event: EventId) -> Option<Interval> {
         let link = self.link(event);
         let start = self.truth[link.from.index()];
         let by_link = Interval::at(start).later(link.lower, link.upper);
-        let within = |told: Interval| Some(told.and(by_link)).filter(|possible| !possible.is_empty());
-        let possible = within(self.required[event.index()]);
+        let required = |kept: usize| self.required[kept][event.index()];
+        let within = |other: Interval, kept: usize| {
+            Some(required(kept).and(other)).filter(|possible| !possible.is_empty())
+        };
+        let possible = within(by_link, ALL);
         if !self.what_if {
             return possible;
         }
-        let (by, told) = (self.by[event.index()], self.told(event));
-        let heard_later = Interval::new(told.earliest, told.latest.min(by));
-        possible.or_else(|| within(heard_later)).or_else(|| {
-            // It happens after what it follows and before it is heard of.
-            let earliest = told.earliest.max(by_link.earliest.min(told.latest));
-            Some(Interval::new(earliest.clamp(start, by), told.latest.clamp(start, by)))
+        let levels = [ALL, NOT_THE_HEARD, ORDER];
+        possible.or_else(|| levels.into_iter().find_map(|kept| within(by_link, kept))).or_else(|| {
+            // Its own link is broken, no more than it has to be: it happens after what it follows and before it is heard of.
+            let after = Interval::new(start, Time::MAX);
+            let told = levels.into_iter().find_map(|kept| within(after, kept)).unwrap_or(Interval::at(start));
+            Some(Interval::new(told.earliest.max(by_link.earliest.min(told.latest)), told.latest))
         })
     }
 

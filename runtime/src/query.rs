@@ -18,7 +18,7 @@ use crate::dispatcher::{Adoption, Dispatcher, Reception, Settings, Strategy};
 use crate::execution::{Aftermath, Execution, Failure, How, Outcome, Row};
 use crate::input::Input;
 use crate::journal::{BadJournal, Journal};
-use crate::knowledge::{Fixed, Knowledge, heard_against, heard_now};
+use crate::knowledge::{Fixed, Knowledge, heard_now};
 use crate::plan::Plan;
 use crate::record::{and_fails, and_goes_on, broken_model, missed_window};
 use crate::replay::{Replay, recover};
@@ -464,17 +464,15 @@ fn recorded(network: &Arc<Network>, execution: &Execution, now: Time) -> Result<
     for (time, event) in heard {
         let link = network.link_of(event).map(|link| network.contingents()[link]);
         let link = link.ok_or(format!("`{}` is not Nature's to decide", network.label(event)))?;
-        let activation = knowledge.happened(network, link.from);
-        let (Some(before), Some(activation)) = (knowledge.happened(network, event), activation) else {
+        if knowledge.happened(network, event).is_none() {
             let (event, from) = (network.label(event), network.label(link.from));
             return Err(format!("`{event}` is heard at {time} s, and `{from}` is not recorded before that"));
-        };
-        let evidence = heard_now(&link, time);
-        knowledge.hear(event, time);
-        if before.and(evidence).is_empty() {
-            knowledge.overrule(event, heard_against(&link, activation, time));
+        }
+        if knowledge.rules_out(network, event, time) {
+            knowledge.hear_against(network, event, time);
         } else {
-            knowledge.add_evidence(event, evidence);
+            knowledge.hear(event, time);
+            knowledge.add_evidence(event, heard_now(&link, time));
         }
     }
     for &(event, row) in &rows {

@@ -62,19 +62,15 @@ pub fn explained(plan: &Plan, program: &str, simulation: &Simulation) -> Result<
         broken: None,
     };
     let mut stopped = run.go_through()?;
-    // News that was asked for is heard even if nothing is left to do with it.
+    // Nothing is left to do, and news is heard until all is over, and all that was asked for: silence until then says something.
+    let asked = simulation.observations.iter().map(|&(_, time)| time).max().unwrap_or_default();
     while let (None, Some(Reverse((time, event)))) = (stopped, run.news.pop()) {
-        if simulation.observations.contains(&(event, time)) && !run.hear(time, event) {
+        if time <= run.over().max(asked) && !run.hear(time, event) {
             stopped = Some(time);
         }
     }
+    let end = stopped.unwrap_or_else(|| run.over());
     let Run { dispatcher, truth, broken, .. } = run;
-    // What Nature has done against the model may be over later than anybody believes.
-    let over = || {
-        all_over(&dispatcher)
-            .max(truth.iter().flatten().copied().max().filter(|_| broken.is_some()).unwrap_or_default())
-    };
-    let end = stopped.unwrap_or_else(over);
     let mut execution = record(&dispatcher, program, end, simulation.internal, &truth);
     execution.seed = Some(simulation.seed);
     if let Some(failure) = broken {
@@ -129,6 +125,12 @@ impl Run<'_> {
                 _ => timeout,
             };
         }
+    }
+
+    /// When all is over: what Nature has done against the model may be later than anybody believes.
+    fn over(&self) -> Time {
+        let truly = self.truth.iter().flatten().copied().max().filter(|_| self.broken.is_some());
+        all_over(&self.dispatcher).max(truly.unwrap_or_default())
     }
 
     fn next_news(&self) -> Option<(Time, EventId)> {

@@ -48,8 +48,8 @@ struct StepJson<'a> {
 /// One change of the source.
 #[derive(Serialize)]
 pub(crate) struct ChangedJson<'a> {
-    what: &'a str,
-    title: &'a str,
+    what: String,
+    title: String,
     #[serde(flatten)]
     place: SpotJson<'a>,
     from: Option<Duration>,
@@ -75,11 +75,11 @@ impl<'a> ChangedJson<'a> {
     pub(crate) fn new(change: &'a Changed, reporter: &'a Reporter<'_>) -> ChangedJson<'a> {
         let finite = |bound: Option<Bound>| bound.and_then(Bound::finite);
         ChangedJson {
-            what: &change.what,
-            title: &change.title,
+            what: change.what(),
+            title: change.title(),
             place: SpotJson::new(change.place, reporter),
-            from: finite(change.amounts.map(|(from, _)| from)),
-            to: finite(change.amounts.map(|(_, to)| to)),
+            from: finite(change.amounts().map(|(from, _)| from)),
+            to: finite(change.amounts().map(|(_, to)| to)),
             applicable: change.is_editable(),
         }
     }

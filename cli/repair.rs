@@ -4,7 +4,7 @@ use std::fs;
 use std::io;
 
 use kirk_compiler::nearest::nearest;
-use kirk_compiler::repair::{Changed, Preference, Proposal, Proposals, Wishes, names, proposals};
+use kirk_compiler::repair::{Changed, Preference, Proposal, Proposals, Wishes, names, proposals, what};
 use kirk_compiler::{Edit, Source, Span, Text, too_large};
 use kirk_network::stnu::TooLarge;
 use kirk_network::{Duration, Verdict, check};
@@ -184,7 +184,7 @@ fn edit(arguments: &RepairOf, input: &Input, found: Option<&Proposals>) -> io::R
         }
     }
     for change in &proposal.changes {
-        print_line(&format!("changed: {}", change.title))?;
+        print_line(&format!("changed: {}", change.title()))?;
     }
     Ok(Status::Yes)
 }
@@ -243,7 +243,7 @@ fn lines(
         for (at, change) in proposal.changes.iter().enumerate() {
             let lead = if at == 0 { format!("{:>3}  ", number + 1) } else { "     and ".to_string() };
             let place = reporter.at(change.place).map_or(String::new(), |at| format!("  {at}"));
-            lines.push(format!("{lead}{}{place}", change.title));
+            lines.push(format!("{lead}{}{place}", change.title()));
         }
         if !proposal.is_applicable() {
             lines.push("     by hand: kirk cannot write this change in the file".to_string());
@@ -301,7 +301,7 @@ struct ProposalJson<'a> {
 
 #[derive(Serialize)]
 struct PlaceJson<'a> {
-    what: &'a str,
+    what: String,
     #[serde(flatten)]
     place: SpotJson<'a>,
 }
@@ -309,7 +309,7 @@ struct PlaceJson<'a> {
 impl<'a> RepairJson<'a> {
     fn new(file: &'a str, found: Option<&'a Proposals>, reporter: &'a Reporter<'_>) -> RepairJson<'a> {
         let by = |change: &Changed| {
-            let (from, to) = change.amounts?;
+            let (from, to) = change.amounts()?;
             Some(to.finite()?.checked_sub(from.finite()?)?.abs())
         };
         let total = |proposal: &Proposal| {
@@ -329,7 +329,10 @@ impl<'a> RepairJson<'a> {
             controllable: Some(found.is_none()),
             repairs: repairs.collect(),
             not_alone: not_alone
-                .map(|(what, span)| PlaceJson { what, place: SpotJson::new(*span, reporter) })
+                .filter_map(|(part, origin, span)| {
+                    let place = SpotJson::new(*span, reporter);
+                    Some(PlaceJson { what: what(*part, origin)?, place })
+                })
                 .collect(),
             gave_up: found.is_some_and(|found| found.gave_up),
         }

@@ -20,7 +20,9 @@ use kirk_network::{Bound, Duration, Network, Part};
 use crate::diagnostic::{Edit, Suggestion};
 use crate::origins::{Origin, OriginKind, Origins, Side};
 use crate::source::{Source, Span};
+pub use crate::wording::repair::what;
 use crate::written::{Written, written};
+pub use edit::Unit;
 use structure::Restructured;
 pub use structure::slack;
 
@@ -67,26 +69,71 @@ pub struct Proposal {
     pub changes: Vec<Changed>,
 }
 
-/// One change.
+/// One change. The words for it are in `wording/repair.rs`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Changed {
-    /// What it is, as part of a sentence: "at most 45 s instead of 40 s for `drive`".
-    pub title: String,
-    /// What is changed: "how long `drive` takes, at most".
-    pub what: String,
+    /// What it is.
+    pub change: ChangeKind,
+    /// What is changed.
+    pub origin: Origin,
     /// Where.
     pub place: Span,
-    /// From which amount to which; nothing if it is no amount.
-    pub amounts: Option<(Bound, Bound)>,
     /// The change of the source; nothing if what is read there is nothing to edit.
     pub edits: Vec<Edit>,
 }
 
+/// What is changed of a constraint, and how.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ChangeKind {
+    /// A bound gets another amount, which is told in the unit that is written.
+    Amount {
+        /// The bound.
+        part: Part,
+        /// What it is.
+        from: Bound,
+        /// What it becomes.
+        to: Bound,
+        /// The unit.
+        unit: Unit,
+    },
+    /// What it says is no more said, or less of it.
+    Loosened(Loosening),
+}
+
+/// How a constraint of which no amount is written is made looser.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Loosening {
+    /// The form it comes from has slack.
+    Slack,
+    /// It is an order, and is left out.
+    Order,
+}
+
 impl Changed {
+    fn amount(
+        change: &Change,
+        origin: &Origin,
+        place: Span,
+        edits: Vec<Edit>,
+        sources: &[Source],
+    ) -> Changed {
+        let Change { from, to, .. } = *change;
+        let part = change.knob.parts()[0];
+        let change = ChangeKind::Amount { part, from, to, unit: edit::unit(place, sources) };
+        Changed { change, origin: origin.clone(), place, edits }
+    }
+
+    /// From which amount to which; nothing if it is no amount.
+    pub fn amounts(&self) -> Option<(Bound, Bound)> {
+        match self.change {
+            ChangeKind::Amount { from, to, .. } => Some((from, to)),
+            ChangeKind::Loosened(_) => None,
+        }
+    }
+
     /// The change of the source, if it can be made there.
     pub(crate) fn suggestion(&self) -> Option<Suggestion> {
-        let Changed { title, edits, .. } = self;
-        self.is_editable().then(|| Suggestion { title: title.clone(), edits: edits.clone() })
+        self.is_editable().then(|| Suggestion { title: self.title(), edits: self.edits.clone() })
     }
 
     /// True if it can be made in the source.
@@ -107,8 +154,8 @@ impl Proposal {
 pub struct Proposals {
     /// The cheapest first: what costs more changes more, each for its size.
     pub proposals: Vec<Proposal>,
-    /// What cannot make it controllable alone, and where it is written.
-    pub not_alone: Vec<(String, Span)>,
+    /// What cannot make it controllable alone: which bound of what, and where it is written.
+    pub not_alone: Vec<(Part, Origin, Span)>,
     /// True if the search was given up before it was at its end.
     pub gave_up: bool,
 }
@@ -144,13 +191,8 @@ pub fn proposals(
     };
     let changed = |change: &Change| {
         let Lever { origin, place, .. } = levers.get(&change.knob)?;
-        Some(Changed {
-            title: title(change, origin, edit::unit(*place, sources)),
-            what: what(change.knob.parts()[0], origin)?,
-            place: *place,
-            amounts: Some((change.from, change.to)),
-            edits: edit::edits(change, network, origin, sources),
-        })
+        let edits = edit::edits(change, network, origin, sources);
+        Some(Changed::amount(change, origin, *place, edits, sources))
     };
     let proposal = |changes: &[Change]| {
         let changes: Option<Vec<Changed>> = changes.iter().map(changed).collect();
@@ -182,7 +224,7 @@ pub fn proposals(
     }
     let alone = |knob: &Knob| {
         let lever = levers.get(knob).filter(|_| knob.parts().iter().any(|part| blamed.contains(part)))?;
-        Some((what(knob.parts()[0], lever.origin)?, lever.place))
+        Some((knob.parts()[0], lever.origin.clone(), lever.place))
     };
     let not_alone = not_alone.iter().filter_map(alone).collect();
     Ok(Some(Proposals { proposals: found, not_alone, gave_up: ended == Ended::OutOfRounds }))
@@ -200,7 +242,7 @@ pub(crate) fn amount(amount: Duration, place: Span, sources: &[Source]) -> Strin
     edit::unit(place, sources).say(amount)
 }
 
-/// A change in words, and as what it is in the source if it can be made there.
+/// A change, as what it is in the source if it can be made there.
 pub(crate) fn change_of_source(
     change: &Change,
     network: &Network,
@@ -214,13 +256,7 @@ pub(crate) fn change_of_source(
         true => edit::edits(change, network, origin, sources),
         false => Vec::new(),
     };
-    Some(Changed {
-        title: title(change, origin, edit::unit(place, sources)),
-        what: what(part, origin)?,
-        place,
-        amounts: Some((change.from, change.to)),
-        edits,
-    })
+    Some(Changed::amount(change, origin, place, edits, sources))
 }
 
 /// All names by which bounds can be kept or weighed.
@@ -304,45 +340,4 @@ fn weight(relative: u64, part: Part, origins: &[&Origin], wishes: &Wishes) -> u6
         weight = weight.saturating_mul(u128::from(*millionths)) / 1_000_000;
     }
     u64::try_from(weight).unwrap_or(u64::MAX).max(1)
-}
-
-/// A change, as part of a sentence: "at most 45 s instead of 40 s for `drive`".
-fn title(change: &Change, origin: &Origin, unit: edit::Unit) -> String {
-    if let (Some(reversed), Some(from), Some(to)) =
-        (origin.reversed(), change.from.finite(), change.to.finite())
-        && from.max(to) <= Duration::ZERO
-    {
-        let is_lower = matches!(change.knob.parts()[0], Part::RequirementLower(_));
-        let word = if is_lower { "at most" } else { "at least" };
-        return format!("{word} {} instead of {} {reversed}", unit.say(-to), unit.say(-from));
-    }
-    let Some(to) = change.to.finite() else { return format!("no bound {}", origin.about()) };
-    let to = unit.say(to);
-    let instead =
-        change.from.finite().map_or(String::new(), |from| format!(" instead of {}", unit.say(from)));
-    let of = origin.about();
-    match change.knob.parts()[0] {
-        Part::RequirementLower(_) => format!("at least {to}{instead} {of}"),
-        Part::LinkLower(_) => format!("Nature taking at least {to}{instead} {of}"),
-        Part::LinkUpper(_) => format!("Nature taking at most {to}{instead} {of}"),
-        Part::DelayMin(_) | Part::DelayMax(_) => format!("news of {} within {to}{instead}", origin.end()),
-        _ => format!("at most {to}{instead} {of}"),
-    }
-}
-
-/// What a bound is about; `None` for what nobody wrote.
-pub fn what(part: Part, origin: &Origin) -> Option<String> {
-    let subject = &origin.subject;
-    let text = match (origin.kind, part) {
-        (_, Part::DelayMin(_) | Part::DelayMax(_)) => format!("how late {} is heard", origin.end()),
-        (OriginKind::Between | OriginKind::Requirement, _) => subject.to_string(),
-        (OriginKind::Link, _) => format!("{subject}, Nature decides"),
-        (OriginKind::Contingent, _) => format!("how long {subject} takes, Nature decides"),
-        (OriginKind::Duration | OriginKind::Constraint, _) => format!("how long {subject} takes"),
-        _ => return None,
-    };
-    // Entries of a file have no name but their number.
-    let number =
-        origin.names.first().filter(|_| matches!(origin.kind, OriginKind::Requirement | OriginKind::Link));
-    Some(number.map_or_else(|| text.clone(), |number| format!("{number}: {text}")))
 }

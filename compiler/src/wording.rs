@@ -9,6 +9,7 @@ mod notes;
 mod origins;
 mod parse;
 mod read;
+pub(crate) mod repair;
 
 use crate::ast::{Limits, Role};
 use crate::code::Code;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use kirk_compiler::repair::{Proposal, Wishes, proposals, slack};
+use kirk_compiler::repair::{Changed, Proposal, Wishes, proposals, slack};
 use kirk_compiler::{Code, Diagnostic, Edit, Lowered, Span};
 
 use crate::analysis::Analysis;
@@ -76,7 +76,7 @@ fn repairs(analysis: &Analysis, mission: &Mission) -> Vec<Fix> {
     let Lowered { network, origins, .. } = &mission.lowered;
     let found = proposals(network, origins, &analysis.sources, &wishes).ok().flatten();
     let fix = |Proposal { changes }: Proposal| {
-        let titles: Vec<&str> = changes.iter().map(|change| change.title.as_str()).collect();
+        let titles: Vec<String> = changes.iter().map(Changed::title).collect();
         let edits = changes.iter().flat_map(|change| &change.edits);
         let edits = edits.map(|edit| (edit.span, edit.text(&analysis.sources).to_string())).collect();
         (format!("Repair: {}", titles.join(" and ")), edits)

@@ -14,7 +14,7 @@ const SECOND: Duration = Duration::from_secs(1);
 
 /// The unit an author writes amounts in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Unit {
+pub struct Unit {
     /// The word for it, if it is written.
     word: Option<&'static str>,
     micros: i64,
@@ -24,7 +24,7 @@ impl Unit {
     const SECONDS: Unit = Unit { word: None, micros: SECOND.as_micros() };
 
     /// An amount in words: `90 s`, `1.5 minutes`.
-    pub(super) fn say(self, amount: Duration) -> String {
+    pub(crate) fn say(self, amount: Duration) -> String {
         match (self.word, self.number(amount)) {
             (Some(word), Some(number)) if number == SECOND => {
                 format!("{number} {}", word.strip_suffix('s').unwrap_or(word))

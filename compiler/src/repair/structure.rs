@@ -9,7 +9,7 @@ use kirk_network::stnu::TooLarge;
 use kirk_network::vary::{self, Change};
 use kirk_network::{Bound, Conflict, Duration, Network, Part, Requirement};
 
-use super::{Changed, Wishes, is_called};
+use super::{ChangeKind, Changed, Loosening, Wishes, is_called};
 use crate::diagnostic::{Edit, Text};
 use crate::form::Form;
 use crate::origins::{Origin, OriginKind, Origins};
@@ -113,14 +113,8 @@ fn changed(
     let of_form = |origin: &&Origin| origin.span == span && loosening.concerns(origin.kind);
     let origin = origins.requirements.iter().filter(of_form).find(|origin| !kept(origin))?;
     let edit = loosening.edit(span, sources)?;
-    let (title, what) = loosening.words(origin);
-    Some(Changed { title, what, place: span, amounts: None, edits: vec![edit] })
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Loosening {
-    Slack,
-    Order,
+    let change = ChangeKind::Loosened(loosening);
+    Some(Changed { change, origin: origin.clone(), place: span, edits: vec![edit] })
 }
 
 impl Loosening {
@@ -135,15 +129,6 @@ impl Loosening {
         match self {
             Loosening::Slack => slack(span, sources),
             Loosening::Order => Some(Edit { span: around(span, sources)?, text: Text::Plain(String::new()) }),
-        }
-    }
-
-    fn words(self, origin: &Origin) -> (String, String) {
-        let subject = &origin.subject;
-        let form = subject.elsewhere();
-        match self {
-            Loosening::Slack => (format!("slack (`:slack t`) in {form}"), format!("the slack of {form}")),
-            Loosening::Order => (format!("without the order {subject}"), origin.text()),
         }
     }
 }

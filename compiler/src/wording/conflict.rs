@@ -78,10 +78,10 @@ fn help(problem: &Problem<'_>) -> Vec<String> {
             "No change of one amount alone is enough: several have to change, or what comes before what, or what is \
              joined. `kirk repair` looks for that.",
         )),
-        Some([one]) => lines.extend(wrapped("", &format!("This alone {settles}: {}.", one.title))),
+        Some([one]) => lines.extend(wrapped("", &format!("This alone {settles}: {}.", one.title()))),
         Some(several) => {
             lines.push(format!("Each of these alone {settles}:"));
-            several.iter().for_each(|one| lines.extend(wrapped("- ", &one.title)));
+            several.iter().for_each(|one| lines.extend(wrapped("- ", &one.title())));
         }
     }
     let is_enough = problem.enough.is_some_and(|enough| !enough.is_empty());

@@ -6,7 +6,7 @@ use kirk_compiler::Severity;
 
 use crate::args::{Check, CheckFormat, Common};
 use crate::elsewhere;
-use crate::input::{Input, load, load_all, shown};
+use crate::input::{Loaded, load, load_all, shown};
 use crate::json::line;
 use crate::judge::{CheckJson, Judged, judge_assuming};
 use crate::news::treatment;
@@ -48,22 +48,22 @@ pub(crate) fn check(arguments: &Check, common: &Common) -> io::Result<Status> {
 }
 
 /// What is judged, each with what to call it: every file by itself, or all of them as one program.
-fn inputs(arguments: &Check) -> Vec<(String, Input)> {
+fn inputs(arguments: &Check) -> Vec<(String, Loaded)> {
     let Check { files, selection, .. } = arguments;
     if arguments.together {
         let all: Vec<&str> = files.iter().map(|file| shown(file)).collect();
         return vec![(all.join(" "), load_all(files, selection))];
     }
     let one = |(index, file): (usize, &String)| match file == "-" && files[..index].contains(file) {
-        true => Input::twice(),
+        true => Loaded::twice(),
         false => load(file, selection),
     };
-    let mut inputs: Vec<Input> = files.iter().enumerate().map(one).collect();
+    let mut inputs: Vec<Loaded> = files.iter().enumerate().map(one).collect();
     elsewhere::point_out(&mut inputs);
     files.iter().map(|file| shown(file).to_string()).zip(inputs).collect()
 }
 
-fn verdict_line(file: &str, input: &Input, judged: Option<&Judged>, arguments: &Check) -> String {
+fn verdict_line(file: &str, input: &Loaded, judged: Option<&Judged>, arguments: &Check) -> String {
     let Some(judged) = judged else {
         let errors = input.diagnostics.iter().filter(|d| d.severity == Severity::Error).count();
         let plural = if errors == 1 { "" } else { "s" };

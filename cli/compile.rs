@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use crate::args::{Common, Compile, Stage, StageFormat};
 use crate::foreign::visible;
-use crate::input::{Input, load_all};
+use crate::input::{Loaded, load_all};
 use crate::json::line;
 use crate::judge::judge;
 use crate::output::{Status, complain, deliver};
@@ -47,7 +47,7 @@ enum Refusal {
     Options(String),
 }
 
-fn emit(arguments: &Compile, input: &mut Input) -> Result<String, Refusal> {
+fn emit(arguments: &Compile, input: &mut Loaded) -> Result<String, Refusal> {
     let format = arguments.format;
     if let Stage::Ast | Stage::Episodes = arguments.emit {
         return emit_program(arguments, input);
@@ -93,7 +93,7 @@ fn emit(arguments: &Compile, input: &mut Input) -> Result<String, Refusal> {
     }
 }
 
-fn emit_program(arguments: &Compile, input: &Input) -> Result<String, Refusal> {
+fn emit_program(arguments: &Compile, input: &Loaded) -> Result<String, Refusal> {
     let Some(compilation) = input.compilation() else {
         if input.network.is_none() {
             return Err(Refusal::Input);

@@ -1,19 +1,19 @@
 //! Why a network is not controllable, as a diagnostic and as JSON.
 
 use kirk_compiler::repair::Changed;
-use kirk_compiler::{Explain, Origin, OriginKind, Said, Side, Span, Told};
+use kirk_compiler::{Explain, Origin, OriginKind, Side, Span, StoryStep, Told};
 use kirk_network::assume::Assumption;
 use kirk_network::{Bound, Conflict, Duration, Network, Part};
 use serde::Serialize;
 
-use crate::input::Input;
+use crate::input::Loaded;
 use crate::report::{Reporter, SpanJson};
 
 /// All there is to say about a "no", in the source: every conflict of a network, which is as assumed. `first` is one of them.
 pub(crate) fn told(
     first: &Conflict,
     network: &Network,
-    input: &Input,
+    input: &Loaded,
     (assumption, theory): (Assumption, bool),
 ) -> Vec<Told> {
     let Some(origins) = input.origins() else { return Vec::new() };
@@ -89,11 +89,15 @@ impl<'a> ConflictJson<'a> {
     pub(crate) fn new(
         told: &'a Told,
         network: &Network,
-        input: &Input,
+        input: &Loaded,
         reporter: &'a Reporter<'_>,
     ) -> ConflictJson<'a> {
         let Told { conflict, story, enough, .. } = told;
-        let step = |Said { part, needs, text }: &'a Said| StepJson { kind: kind(*part), needs: *needs, text };
+        let step = |StoryStep { part, needs, text }: &'a StoryStep| StepJson {
+            kind: kind(*part),
+            needs: *needs,
+            text,
+        };
         let changed = |change: &'a Changed| ChangedJson::new(change, reporter);
         ConflictJson {
             members: members(conflict, network, input, reporter),
@@ -131,7 +135,7 @@ fn kind(part: Part) -> &'static str {
 pub(crate) fn members(
     conflict: &Conflict,
     network: &Network,
-    input: &Input,
+    input: &Loaded,
     reporter: &Reporter<'_>,
 ) -> Vec<MemberJson> {
     conflict

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::input::Input;
+use crate::input::Loaded;
 
 /// Says of every program that a file lacks and another one defines where it is, and how to check both as one.
-pub(crate) fn point_out(inputs: &mut [Input]) {
+pub(crate) fn point_out(inputs: &mut [Loaded]) {
     if inputs.len() < 2 {
         return;
     }

@@ -15,7 +15,7 @@ use crate::args::{
     Common, CompanionName, DriverEvents, DriverStarts, Live, Resume, Run, ScreenWhen, Show, StrategyName,
     TextOrJson,
 };
-use crate::input::Input;
+use crate::input::Loaded;
 use crate::json::line;
 use crate::live;
 use crate::output::{self, Status, complain, print, remark};
@@ -25,7 +25,7 @@ use crate::watch;
 use crate::why::why;
 
 /// Executes a proven mission in real time.
-pub(crate) fn execute(arguments: &Run, common: &Common, input: &Input, plan: Plan) -> io::Result<Status> {
+pub(crate) fn execute(arguments: &Run, common: &Common, input: &Loaded, plan: Plan) -> io::Result<Status> {
     let Some(network) = &input.network else { return Ok(Status::Wrong) };
     let options = match options(arguments) {
         Ok(options) => options,

@@ -14,7 +14,7 @@ use crate::args::Selection;
 use crate::wording::Problem;
 
 /// Everything that became of one input file, or of several that are one program.
-pub(crate) struct Input {
+pub(crate) struct Loaded {
     /// The files, for diagnostics to point into.
     pub(crate) sources: Vec<Source>,
     /// What there is to say about it.
@@ -48,14 +48,14 @@ enum Kind {
 type Reader = fn(&str) -> Result<(Network, SourceMap), Vec<ReadProblem>>;
 
 /// Reads and compiles an input file; `-` is standard input.
-pub(crate) fn load(file: &str, selection: &Selection) -> Input {
+pub(crate) fn load(file: &str, selection: &Selection) -> Loaded {
     load_one(file, bytes_of(file), selection)
 }
 
-fn load_one(file: &str, bytes: Bytes, selection: &Selection) -> Input {
+fn load_one(file: &str, bytes: Bytes, selection: &Selection) -> Loaded {
     let text = match text_of(file, bytes) {
         Ok(text) => text,
-        Err(unreadable) => return Input::broken(shown(file), *unreadable),
+        Err(unreadable) => return Loaded::broken(shown(file), *unreadable),
     };
     match kind(file, &text) {
         Kind::Network(reader) => {
@@ -65,7 +65,7 @@ fn load_one(file: &str, bytes: Bytes, selection: &Selection) -> Input {
         }
         Kind::Rmpl => match with_companions(file, text) {
             Ok(sources) => program(sources, selection),
-            Err((source, unreadable)) => Input {
+            Err((source, unreadable)) => Loaded {
                 sources: vec![source],
                 diagnostics: unreadable,
                 content: Content::Unread,
@@ -108,12 +108,12 @@ fn is_same_file(one: &str, other: &str) -> bool {
 }
 
 /// Reads several files and compiles them as one program.
-pub(crate) fn load_all(files: &[String], selection: &Selection) -> Input {
+pub(crate) fn load_all(files: &[String], selection: &Selection) -> Loaded {
     load_begun(files, None, selection)
 }
 
 /// The same where the first of them was read already: a pipe can be read only once.
-pub(crate) fn load_begun(files: &[String], mut first: Option<Bytes>, selection: &Selection) -> Input {
+pub(crate) fn load_begun(files: &[String], mut first: Option<Bytes>, selection: &Selection) -> Loaded {
     let mut bytes = |file: &str| first.take().unwrap_or_else(|| bytes_of(file));
     if let [file] = files {
         return load_one(file, bytes(file), selection);
@@ -144,7 +144,7 @@ pub(crate) fn load_begun(files: &[String], mut first: Option<Bytes>, selection: 
     if diagnostics.is_empty() {
         program(sources, selection)
     } else {
-        Input { sources, diagnostics, content: Content::Unread, network: None }
+        Loaded { sources, diagnostics, content: Content::Unread, network: None }
     }
 }
 
@@ -283,7 +283,7 @@ pub(crate) fn at_most(file: &str, bytes: Vec<u8>, most: u64) -> Bytes {
     Ok(bytes)
 }
 
-fn program(sources: Vec<Source>, selection: &Selection) -> Input {
+fn program(sources: Vec<Source>, selection: &Selection) -> Loaded {
     let options = Options { package: selection.package.clone(), entry: selection.entry().to_string() };
     let mut compilation = compile(&sources, &options);
     let diagnostics = std::mem::take(&mut compilation.diagnostics);
@@ -292,10 +292,10 @@ fn program(sources: Vec<Source>, selection: &Selection) -> Input {
         None => (None, None),
     };
     let content = Content::Program { compilation: Box::new(compilation), origins };
-    Input { sources, diagnostics, content, network }
+    Loaded { sources, diagnostics, content, network }
 }
 
-fn network(name: &str, text: String, reader: Reader) -> Input {
+fn network(name: &str, text: String, reader: Reader) -> Loaded {
     let text = without_mark(&text);
     let read = reader(text);
     let sources = vec![Source::new(name, text)];
@@ -303,14 +303,14 @@ fn network(name: &str, text: String, reader: Reader) -> Input {
         Ok((network, places)) => {
             let origins = Box::new(Origins::of_network(&network, &places));
             let content = Content::Network { origins, named: !network.name().is_empty() };
-            Input { sources, diagnostics: Vec::new(), content, network: Some(named(network, name)) }
+            Loaded { sources, diagnostics: Vec::new(), content, network: Some(named(network, name)) }
         }
         Err(problems) => {
             let told = |problem: ReadProblem| {
                 Problem::BadNetwork(problem.message).at(Span::new(0, problem.offset, problem.offset))
             };
             let diagnostics = problems.into_iter().map(told).collect();
-            Input { sources, diagnostics, content: Content::Unread, network: None }
+            Loaded { sources, diagnostics, content: Content::Unread, network: None }
         }
     }
 }
@@ -324,14 +324,14 @@ fn named(network: Network, file: &str) -> Network {
     Network::new(stem.to_string(), network.origin(), events, requirements, contingents).unwrap_or(network)
 }
 
-impl Input {
+impl Loaded {
     /// Standard input, which was read already.
-    pub(crate) fn twice() -> Input {
-        Input::broken(shown("-"), *Unreadable::at_all(Problem::StandardInputTwice))
+    pub(crate) fn twice() -> Loaded {
+        Loaded::broken(shown("-"), *Unreadable::at_all(Problem::StandardInputTwice))
     }
 
-    fn broken(name: &str, Unreadable { text, diagnostic }: Unreadable) -> Input {
-        Input {
+    fn broken(name: &str, Unreadable { text, diagnostic }: Unreadable) -> Loaded {
+        Loaded {
             sources: vec![Source::new(name, text)],
             diagnostics: vec![diagnostic],
             content: Content::Unread,
@@ -340,7 +340,7 @@ impl Input {
     }
 
     /// What becomes of the same input with other texts.
-    pub(crate) fn with_sources(&self, sources: Vec<Source>, selection: &Selection) -> Input {
+    pub(crate) fn with_sources(&self, sources: Vec<Source>, selection: &Selection) -> Loaded {
         let reader = |source: &Source| match kind(&source.name, &source.text) {
             Kind::Network(reader) if self.is_network() => Some(reader),
             _ => None,

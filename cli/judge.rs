@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use crate::args::Delays;
 use crate::conflict::{ConflictJson, MemberJson, members, told};
-use crate::input::Input;
+use crate::input::Loaded;
 use crate::report::{DiagnosticJson, Reporter};
 
 /// The verdict on a network and how long it took.
@@ -26,12 +26,12 @@ pub(crate) struct Judged {
 }
 
 /// Decides; a conflict becomes one of the diagnostics. `None` if there is no network.
-pub(crate) fn judge(input: &mut Input) -> Option<Judged> {
+pub(crate) fn judge(input: &mut Loaded) -> Option<Judged> {
     judge_assuming(input, Delays::AsWritten, false)
 }
 
 /// Decides as if delays were as they are said to be.
-pub(crate) fn judge_assuming(input: &mut Input, delays: Delays, theory: bool) -> Option<Judged> {
+pub(crate) fn judge_assuming(input: &mut Loaded, delays: Delays, theory: bool) -> Option<Judged> {
     let network = input.network.as_ref()?;
     let start = Instant::now();
     let decided = match delays.assumption() {
@@ -129,7 +129,7 @@ pub(crate) struct VerdictJson {
 impl<'a> CheckJson<'a> {
     pub(crate) fn new(
         file: &'a str,
-        input: &'a Input,
+        input: &'a Loaded,
         judged: Option<&'a Judged>,
         delays: Delays,
         reporter: &'a Reporter<'_>,

@@ -14,7 +14,7 @@ use similar::TextDiff;
 use crate::args::{Common, Prefer, RepairOf, TextOrJson};
 use crate::conflict::{ChangedJson, SpotJson};
 use crate::foreign::one_line;
-use crate::input::{Input, STDIN, load_all, without_mark};
+use crate::input::{Loaded, STDIN, load_all, without_mark};
 use crate::json::line;
 use crate::output::{Status, complain, print, print_line, remark};
 use crate::replace::Replacement;
@@ -82,7 +82,7 @@ fn refuse(wrong: &str) -> io::Result<Status> {
 }
 
 /// What the command line wishes for, or what is wrong with that.
-fn wishes(arguments: &RepairOf, input: &Input) -> Result<Wishes, String> {
+fn wishes(arguments: &RepairOf, input: &Loaded) -> Result<Wishes, String> {
     let known = |name: &str| -> Result<String, String> {
         let all: Vec<&str> = input.origins().map(|origins| names(origins).collect()).unwrap_or_default();
         if input.network.is_none() || all.iter().any(|known| known.eq_ignore_ascii_case(name)) {
@@ -116,7 +116,7 @@ fn wishes(arguments: &RepairOf, input: &Input) -> Result<Wishes, String> {
 
 /// Leaves the proposals whose edits, read afresh, are controllable, and returns how many others there were. What cannot be edited is
 /// proven of the network.
-fn drop_unproven(found: &mut Proposals, input: &Input, arguments: &RepairOf) -> usize {
+fn drop_unproven(found: &mut Proposals, input: &Loaded, arguments: &RepairOf) -> usize {
     let before = found.proposals.len();
     found.proposals.retain(|proposal| {
         let Some(sources) = edited(proposal, &input.sources) else { return true };
@@ -143,7 +143,7 @@ fn edited(proposal: &Proposal, sources: &[Source]) -> Option<Vec<Source>> {
 }
 
 /// Makes a proposal, or prints it as a patch.
-fn edit(arguments: &RepairOf, input: &Input, found: Option<&Proposals>) -> io::Result<Status> {
+fn edit(arguments: &RepairOf, input: &Loaded, found: Option<&Proposals>) -> io::Result<Status> {
     let Some(found) = found else {
         return refuse("it is controllable: there is nothing to repair");
     };

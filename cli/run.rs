@@ -13,7 +13,7 @@ use kirk_runtime::{
 use crate::args::{Common, Nature, Run, StrategyName, TextOrJson};
 use crate::conflict;
 use crate::execute;
-use crate::input::{Input, load_all};
+use crate::input::{Loaded, load_all};
 use crate::json::line;
 use crate::news::treatment;
 use crate::observations::Observations;
@@ -86,7 +86,7 @@ pub(crate) fn run(arguments: &Run, common: &Common) -> io::Result<Status> {
 pub(crate) struct Unproven;
 
 /// Proves and compiles what was read; `None` if nothing could be.
-pub(crate) fn plan_of(input: &mut Input) -> Option<Result<Plan, Unproven>> {
+pub(crate) fn plan_of(input: &mut Loaded) -> Option<Result<Plan, Unproven>> {
     let network = input.network.as_ref()?;
     match Plan::new(network) {
         Ok(plan) => Some(Ok(plan)),

@@ -10,7 +10,7 @@ use kirk_compiler::code::markdown;
 use kirk_compiler::{Code, Diagnostic, Severity, Suggestion, explain};
 use serde_json::{Value, json};
 
-use crate::input::Input;
+use crate::input::Loaded;
 use crate::judge::CheckJson;
 use crate::output::Status;
 use crate::report::{Reporter, SpanJson};
@@ -25,7 +25,7 @@ pub(crate) struct Log {
 
 impl Log {
     /// Adds one checked input.
-    pub(crate) fn add(&mut self, input: &Input, reporter: &Reporter<'_>, checked: &CheckJson<'_>) {
+    pub(crate) fn add(&mut self, input: &Loaded, reporter: &Reporter<'_>, checked: &CheckJson<'_>) {
         let first = self.artifacts.len();
         for source in &input.sources {
             self.artifacts.push(json!({
@@ -146,7 +146,7 @@ fn text(diagnostic: &Diagnostic) -> String {
 }
 
 /// The changes of a suggestion, file by file.
-fn fix(suggestion: &Suggestion, first: usize, input: &Input, reporter: &Reporter<'_>) -> Value {
+fn fix(suggestion: &Suggestion, first: usize, input: &Loaded, reporter: &Reporter<'_>) -> Value {
     let mut changes: BTreeMap<u32, Vec<Value>> = BTreeMap::new();
     for edit in &suggestion.edits {
         changes.entry(edit.span.source).or_default().push(json!({

@@ -16,7 +16,7 @@ use serde::Serialize;
 
 use crate::args::{Common, SlackOf, TextOrJson};
 use crate::foreign::one_line;
-use crate::input::{Input, load_all};
+use crate::input::{Loaded, load_all};
 use crate::json::line;
 use crate::judge::judge;
 use crate::output::{Status, print, print_line};
@@ -83,7 +83,7 @@ struct Activity {
     stretch: Option<Bound>,
 }
 
-fn measure(network: &Network, input: &Input) -> Result<Option<Left>, TooLarge> {
+fn measure(network: &Network, input: &Loaded) -> Result<Option<Left>, TooLarge> {
     let Some(origins) = input.origins() else { return Ok(None) };
     let knobs = knobs(network, origins);
     let all: Vec<Knob> = knobs.iter().map(|(knob, ..)| knob.clone()).collect();
@@ -135,7 +135,7 @@ fn knobs<'a>(network: &Network, origins: &'a Origins) -> Vec<(Knob, String, Writ
 
 /// The activities of ours, with the latest start that can be promised and how long each may be made to take. Of a network, the
 /// events of ours.
-fn activities(network: &Network, input: &Input) -> Result<Vec<Activity>, TooLarge> {
+fn activities(network: &Network, input: &Loaded) -> Result<Vec<Activity>, TooLarge> {
     let Merged { network: merged, event_of, .. } = merge(network);
     let ours = |event: EventId| {
         let event = event_of[event.index()];

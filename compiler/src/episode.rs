@@ -30,13 +30,13 @@ pub struct Episode {
     pub slack: Option<bool>,
     /// From its start to its end, if something is said about that.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub duration: Option<Interval>,
+    pub duration: Option<Range>,
     /// True if Nature decides the duration.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub contingent: bool,
     /// How early and late the news of its end may be.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub delay: Option<Interval>,
+    pub delay: Option<Range>,
     /// What has to hold.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub requires: Option<Box<Condition>>,
@@ -83,7 +83,7 @@ pub struct Constraint {
     /// Where it ends.
     pub to: EventOf,
     /// From the one to the other.
-    pub interval: Interval,
+    pub interval: Range,
 }
 
 /// The start or the end of an episode.
@@ -98,7 +98,7 @@ pub struct EventOf {
 /// An interval of durations; a list of two when it is serialised, the upper bound null if there is none.
 #[derive(Clone, Copy, Debug, Serialize)]
 #[serde(into = "Vec<Side>")]
-pub struct Interval {
+pub struct Range {
     /// The least.
     pub lower: Duration,
     /// The most.
@@ -131,8 +131,8 @@ enum Side {
     Infinite,
 }
 
-impl From<Interval> for Vec<Side> {
-    fn from(interval: Interval) -> Vec<Side> {
+impl From<Range> for Vec<Side> {
+    fn from(interval: Range) -> Vec<Side> {
         vec![Side::Finite(interval.lower), interval.upper.finite().map_or(Side::Infinite, Side::Finite)]
     }
 }

@@ -10,7 +10,7 @@ mod scope;
 use kirk_network::{Bound, Duration};
 
 use crate::ast::{Condition, Ident, Limits, Value, ValueKind};
-use crate::episode::{Episode, Interval, Kind, MAX_EPISODES};
+use crate::episode::{Episode, Kind, MAX_EPISODES, Range};
 use crate::problem::Problems;
 use crate::source::Span;
 use crate::typed::{Between, Body, EventOf, Expression, Model, Program, Timing, Work};
@@ -78,7 +78,7 @@ struct Pending<'a> {
     scope: usize,
     from: (&'a EventOf, Option<Vec<Value>>),
     to: (&'a EventOf, Option<Vec<Value>>),
-    interval: Interval,
+    interval: Range,
 }
 
 impl<'a> Expander<'a> {

@@ -4,7 +4,7 @@ mod amounts;
 pub(crate) mod problem;
 mod story;
 
-pub use story::Said;
+pub use story::StoryStep;
 
 use kirk_network::conflicts::{conflicts, without};
 use kirk_network::stnu::TooLarge;
@@ -49,7 +49,7 @@ pub struct Told {
     /// In words and places.
     pub diagnostic: Diagnostic,
     /// Step by step, from event to event; nothing if the walk would be too long to tell anything.
-    pub story: Vec<Said>,
+    pub story: Vec<StoryStep>,
     /// The changes of one amount each that settle it, each alone; `None` if the mission is too large to look for them.
     pub enough: Option<Vec<Changed>>,
 }

@@ -96,7 +96,7 @@ pub use code::{Code, explain};
 pub use companions::{Companion, companions};
 pub use diagnostic::{Diagnostic, Edit, Label, Severity, Suggestion, Text};
 pub use episode::{MAX_DEPTH, MAX_EPISODES};
-pub use explain::{Explain, Said, Told};
+pub use explain::{Explain, StoryStep, Told};
 pub use format::format;
 pub use front::{Front, front, front_in_order};
 pub use kirk_network::nearest;

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use kirk_network::{Bound, ContingentLink, Delay, Duration, Event, EventId, Name, Network, Requirement};
 
-use crate::episode::{Constraint, Episode, EventOf, Interval, Kind};
+use crate::episode::{Constraint, Episode, EventOf, Kind, Range};
 use crate::origins::{Origin, OriginKind, Origins, Point, Statement, Subject};
 use crate::source::Span;
 
@@ -109,7 +109,7 @@ impl Lowering {
                 continue;
             };
             names.extend(others);
-            let Interval { lower, upper, lower_span, upper_span, span } = *interval;
+            let Range { lower, upper, lower_span, upper_span, span } = *interval;
             self.requirements.push(Requirement { from, to, lower: Bound::Finite(lower), upper });
             self.origins.requirements.push(Origin {
                 span,
@@ -139,9 +139,9 @@ impl Lowering {
         self.origins.requirements.push(Origin { span, kind, says, subject, names, places: [span; 4] });
     }
 
-    fn duration(&mut self, episode: &Episode, interval: &Interval, (from, to): Ends) {
-        let Interval { lower, upper, lower_span, upper_span, span } = *interval;
-        let origin = |kind: OriginKind, news: Option<&Interval>| Origin {
+    fn duration(&mut self, episode: &Episode, interval: &Range, (from, to): Ends) {
+        let Range { lower, upper, lower_span, upper_span, span } = *interval;
+        let origin = |kind: OriginKind, news: Option<&Range>| Origin {
             span,
             kind,
             says: Statement::Passes {

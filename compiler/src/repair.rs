@@ -12,7 +12,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use kirk_network::conflicts::conflicts;
 use kirk_network::least::could_settle;
-use kirk_network::repair::{Allowed, Ended, Options, Repair, Repairs, repairs};
+use kirk_network::repair::{Allowed, Extent, Options, Repair, Repairs, repairs};
 use kirk_network::stnu::TooLarge;
 use kirk_network::vary::{Change, Knob};
 use kirk_network::{Bound, Duration, Network, Part};
@@ -186,7 +186,7 @@ pub fn proposals(
     let verdicts = wishes.effort / network.events().len().max(1);
     let options =
         Options { limit: wishes.limit, rounds: rounds.min(verdicts), patience: patience.min(verdicts) };
-    let Some(Repairs { repairs, not_alone, ended }) = repairs(network, &allowed, &options)? else {
+    let Some(Repairs { repairs, not_alone, extent }) = repairs(network, &allowed, &options)? else {
         return Ok(None);
     };
     let changed = |change: &Change| {
@@ -227,7 +227,7 @@ pub fn proposals(
         Some((knob.parts()[0], lever.origin.clone(), lever.place))
     };
     let not_alone = not_alone.iter().filter_map(alone).collect();
-    Ok(Some(Proposals { proposals: found, not_alone, gave_up: ended == Ended::OutOfRounds }))
+    Ok(Some(Proposals { proposals: found, not_alone, gave_up: extent == Extent::OutOfRounds }))
 }
 
 /// True if something that takes time is to take none.

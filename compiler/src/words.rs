@@ -13,7 +13,7 @@ pub struct Word {
     /// Where its form stands.
     pub position: Position,
     /// What stands in the form behind the word, as a signature shows it; the last part may be there again and again.
-    pub parts: &'static [(&'static str, Part)],
+    pub parts: &'static [(&'static str, Piece)],
     /// The keywords of the form.
     pub keywords: &'static [Keyword],
     /// Where its parts go if they do not fit on one line.
@@ -51,7 +51,7 @@ pub enum Position {
 
 /// What stands in a place of a form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum Piece {
     /// A new name, or whatever else only the writer knows.
     Name,
     /// A list of lists: the slots of a class, the names of a `let`.
@@ -84,7 +84,7 @@ pub struct Keyword {
     /// Its name, without the colon.
     pub name: &'static str,
     /// What its value is.
-    pub value: Part,
+    pub value: Piece,
     /// The value to be filled in.
     pub filled: &'static str,
     /// What it means.
@@ -142,7 +142,7 @@ impl Word {
 
     /// What stands in the form behind the word, keywords and their values each by itself.
     pub fn pieces(&self) -> impl Iterator<Item = &'static str> {
-        let apart = |part: Part| part == Part::Keywords;
+        let apart = |part: Piece| part == Piece::Keywords;
         self.parts.iter().flat_map(move |&(text, part)| text.split(move |c| c == ' ' && apart(part)))
     }
 
@@ -157,7 +157,7 @@ impl Word {
     }
 
     /// What stands in a place behind the word, counted from 0.
-    pub fn part(&self, index: usize) -> Option<Part> {
+    pub fn part(&self, index: usize) -> Option<Piece> {
         self.parts.get(index).or(self.parts.last()).map(|(_, part)| *part)
     }
 }

@@ -6,7 +6,7 @@ use kirk_compiler::repair::{Changed, Proposal, Wishes, proposals, slack};
 use kirk_compiler::{Code, Diagnostic, Edit, Lowered, Span};
 
 use crate::analysis::Analysis;
-use crate::mission::{Judgement, Mission, judge};
+use crate::judged::{Judged, Judgement, judge};
 use crate::view::View;
 
 /// An edit that puts a problem right.
@@ -65,7 +65,7 @@ fn suggested<'a>(analysis: &'a Analysis, diagnostic: &'a Diagnostic) -> impl Ite
 }
 
 /// What makes a mission controllable, as `kirk repair` proposes it. Each is tried before it is offered.
-fn repairs(analysis: &Analysis, mission: &Mission) -> Vec<Fix> {
+fn repairs(analysis: &Analysis, mission: &Judged) -> Vec<Fix> {
     const LARGE: usize = 2_000;
     // Somebody waits: what is not found soon is not offered. Of large missions nothing is tried, as each trial takes as long as the
     // verdict.
@@ -90,7 +90,7 @@ fn repairs(analysis: &Analysis, mission: &Mission) -> Vec<Fix> {
 }
 
 /// The mission after an edit.
-fn tried(analysis: &Analysis, mission: &Mission, (_, edits): &Fix) -> Option<Mission> {
+fn tried(analysis: &Analysis, mission: &Judged, (_, edits): &Fix) -> Option<Judged> {
     let (_, unjudged) = analysis.after(edits);
     let (after, _) = judge(unjudged);
     after.into_iter().find(|after| after.program == mission.program)

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use kirk_compiler::words::{Keyword, Part, Position, keyword, word};
+use kirk_compiler::words::{Keyword, Piece, Position, keyword, word};
 use kirk_compiler::{Span, Symbol, SymbolKind};
 
 use crate::analysis::Analysis;
@@ -61,28 +61,28 @@ pub fn completion(analysis: &Analysis, offset: u32) -> Vec<Completion> {
 }
 
 /// What may stand at the cursor.
-fn wanted(cursor: &Cursor<'_>) -> Vec<Part> {
+fn wanted(cursor: &Cursor<'_>) -> Vec<Piece> {
     let around = cursor.head(usize::from(cursor.first));
     let before = cursor.open.iter().rev().nth(usize::from(cursor.first)).map(|open| open.before);
     // How many parts stand before the cursor, or before the parenthesis it stands behind.
     let Some(before) = before.map(|before| before.saturating_sub(1 + usize::from(cursor.first))) else {
-        return vec![Part::Form(Position::Definition)];
+        return vec![Piece::Form(Position::Definition)];
     };
     let value = cursor.keyword.as_deref().and_then(keyword).map(|keyword| keyword.value);
-    if let Some(value) = value.filter(|value| *value != Part::Name) {
+    if let Some(value) = value.filter(|value| *value != Piece::Name) {
         return vec![value];
     }
     let form = word(&around);
     match form.and_then(|form| form.part(before)) {
-        Some(Part::Options) if cursor.first => vec![Part::Keywords, Part::Form(Position::Body)],
-        Some(Part::Options) => vec![Part::Form(Position::Body)],
-        Some(Part::Clause) => vec![Part::Keywords],
-        Some(Part::Keywords) if cursor.first => vec![Part::Number],
+        Some(Piece::Options) if cursor.first => vec![Piece::Keywords, Piece::Form(Position::Body)],
+        Some(Piece::Options) => vec![Piece::Form(Position::Body)],
+        Some(Piece::Clause) => vec![Piece::Keywords],
+        Some(Piece::Keywords) if cursor.first => vec![Piece::Number],
         Some(part) => vec![part],
         None if form.is_some() || around.is_empty() && cursor.first => Vec::new(),
-        None if cursor.is_in_slot() || is_in_options(cursor) => vec![Part::Keywords],
+        None if cursor.is_in_slot() || is_in_options(cursor) => vec![Piece::Keywords],
         // The argument of a call, or of a calculation.
-        None => vec![Part::Number],
+        None => vec![Piece::Number],
     }
 }
 
@@ -91,7 +91,7 @@ fn is_in_options(cursor: &Cursor<'_>) -> bool {
     let head = cursor.head(0);
     let around = word(&cursor.head(1));
     (head.is_empty() || head.starts_with(':'))
-        && around.is_some_and(|form| form.part(0) == Some(Part::Options))
+        && around.is_some_and(|form| form.part(0) == Some(Piece::Options))
 }
 
 struct Offer<'a> {
@@ -104,9 +104,9 @@ struct Offer<'a> {
 }
 
 impl Offer<'_> {
-    fn add(&mut self, wanted: Part) {
+    fn add(&mut self, wanted: Piece) {
         match wanted {
-            Part::Form(position) => {
+            Piece::Form(position) => {
                 self.words(position);
                 match position {
                     Position::Body => self.programs(),
@@ -114,30 +114,30 @@ impl Offer<'_> {
                     _ => {}
                 }
             }
-            Part::Content => {
+            Piece::Content => {
                 self.words(Position::Declare);
-                self.add(Part::Form(Position::Body));
+                self.add(Piece::Form(Position::Body));
             }
-            Part::Number | Part::Bound if self.cursor.first => self.words(Position::Number),
-            Part::Number => {
+            Piece::Number | Piece::Bound if self.cursor.first => self.words(Position::Number),
+            Piece::Number => {
                 self.values();
                 self.words(Position::Number);
             }
-            Part::Bound => {
+            Piece::Bound => {
                 self.plain(":infinity", CompletionKind::Value, "No limit.");
-                self.add(Part::Number);
+                self.add(Piece::Number);
             }
-            Part::Flag => ["t", "nil"].iter().for_each(|flag| self.plain(flag, CompletionKind::Value, "")),
-            Part::Occurrence => self.symbols(|kind| match kind {
+            Piece::Flag => ["t", "nil"].iter().for_each(|flag| self.plain(flag, CompletionKind::Value, "")),
+            Piece::Occurrence => self.symbols(|kind| match kind {
                 SymbolKind::Label => Some((CompletionKind::Label, "a label")),
                 SymbolKind::Program(_) => Some((CompletionKind::Program, "the one occurrence of a program")),
                 _ => None,
             }),
-            Part::Class => self.symbols(|kind| {
+            Piece::Class => self.symbols(|kind| {
                 matches!(kind, SymbolKind::Class(_)).then_some((CompletionKind::Class, "a class"))
             }),
-            Part::Keywords | Part::Options | Part::Clause => self.keywords(),
-            Part::Name | Part::List => {}
+            Piece::Keywords | Piece::Options | Piece::Clause => self.keywords(),
+            Piece::Name | Piece::List => {}
         }
     }
 

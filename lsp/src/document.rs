@@ -6,8 +6,8 @@ use kirk_compiler::Diagnostic;
 use lsp_types::{TextDocumentContentChangeEvent, Uri};
 
 use crate::analysis::{Analysis, Companions, Unjudged, analyse_among};
+use crate::judged::Judged;
 use crate::lines::{Encoding, Lines};
-use crate::mission::Mission;
 use crate::view::{Shift, View};
 
 /// An open document.
@@ -26,7 +26,7 @@ pub(crate) struct Document {
     /// The last revision that was judged, and what there is to say about it.
     told: Option<(u64, Vec<Diagnostic>)>,
     /// The last text in which there were missions, and these.
-    known: Option<(String, Arc<Vec<Mission>>)>,
+    known: Option<(String, Arc<Vec<Judged>>)>,
     /// True if the newest text has been handed on, to be judged or to the client.
     pub(crate) handed_on: bool,
     /// True if the client has been told of it.
@@ -120,7 +120,7 @@ impl Document {
     pub(crate) fn keep(
         &mut self,
         (revision, text): (u64, String),
-        missions: Vec<Mission>,
+        missions: Vec<Judged>,
         diagnostics: Vec<Diagnostic>,
     ) -> bool {
         if !missions.is_empty() {

@@ -6,8 +6,8 @@ use kirk_compiler::episode::Kind;
 use kirk_network::windows::Window;
 use kirk_network::{Bound, Time};
 
+use crate::judged::{Judged, Judgement};
 use crate::left::start_of;
-use crate::mission::{Judgement, Mission};
 use crate::view::View;
 
 /// A short text in the text.
@@ -109,7 +109,7 @@ pub fn lenses(view: &View) -> Vec<Lens> {
     found
 }
 
-fn verdict(mission: &Mission) -> String {
+fn verdict(mission: &Judged) -> String {
     let network = &mission.lowered.network;
     match &mission.verdict {
         Judgement::Uncontrollable => "not controllable: some bounds do not go together".to_string(),

@@ -9,8 +9,8 @@ use kirk_network::windows::Window;
 
 use crate::analysis::Analysis;
 use crate::cursor::{Cursor, pointed_at};
+use crate::judged::{Judged, Occurrence};
 use crate::left;
-use crate::mission::{Mission, Occurrence};
 use crate::view::View;
 use crate::waits::{Waits, in_words, waits};
 
@@ -211,7 +211,7 @@ fn bounds(view: &View, place: Span) -> Option<String> {
 fn occurrences(view: &View, form: Span) -> Option<String> {
     let all = view.occurrences(form);
     let mut lines: Vec<String> = Vec::new();
-    let mut last: Option<&Mission> = None;
+    let mut last: Option<&Judged> = None;
     for (mission, occurrence) in all.iter().take(MOST_OCCURRENCES) {
         let Some(times) = times(mission, occurrence, all.len() == 1) else { continue };
         if !last.is_some_and(|last| std::ptr::eq(last, *mission)) {
@@ -227,7 +227,7 @@ fn occurrences(view: &View, form: Span) -> Option<String> {
 }
 
 /// When an occurrence happens; in detail also how much is left, what it waits for and what becomes of the news of its end.
-fn times(mission: &Mission, occurrence: &Occurrence, detailed: bool) -> Option<String> {
+fn times(mission: &Judged, occurrence: &Occurrence, detailed: bool) -> Option<String> {
     let network = &mission.lowered.network;
     let (start, end) = (mission.window(occurrence.start)?, mission.window(occurrence.end)?);
     let name = match occurrence.kind {

@@ -10,7 +10,7 @@ use kirk_network::slack::slack;
 use kirk_network::vary::Knob;
 use kirk_network::{Bound, Duration, EventId, Network, Part};
 
-use crate::mission::{Judgement, Mission, Occurrence};
+use crate::judged::{Judged, Judgement, Occurrence};
 use crate::view::View;
 
 /// Of missions with more events than this nobody would wait for the figures.
@@ -33,7 +33,7 @@ struct Left {
 }
 
 /// What an occurrence has left, in a sentence; nothing if there is no guarantee.
-pub(crate) fn of_occurrence(mission: &Mission, occurrence: &Occurrence) -> Option<String> {
+pub(crate) fn of_occurrence(mission: &Judged, occurrence: &Occurrence) -> Option<String> {
     if !is_measured(mission)? {
         return Some(TOO_LARGE.to_string());
     }
@@ -59,17 +59,17 @@ pub(crate) fn of_occurrence(mission: &Mission, occurrence: &Occurrence) -> Optio
 }
 
 /// How late an occurrence may start, if we decide, and the mission is so small that this is known at once.
-pub(crate) fn start_of(mission: &Mission, occurrence: &Occurrence) -> Option<Bound> {
+pub(crate) fn start_of(mission: &Judged, occurrence: &Occurrence) -> Option<Bound> {
     is_measured(mission)?.then(|| latest(&mission.lowered.network, occurrence.start))?
 }
 
 /// Whether the mission is measured; nothing if it has no guarantee to lose.
-fn is_measured(mission: &Mission) -> Option<bool> {
+fn is_measured(mission: &Judged) -> Option<bool> {
     let is_small = mission.lowered.network.events().len() <= LARGE;
     (mission.verdict == Judgement::Controllable).then_some(is_small)
 }
 
-fn left(mission: &Mission, occurrence: &Occurrence) -> Left {
+fn left(mission: &Judged, occurrence: &Occurrence) -> Left {
     let network = &mission.lowered.network;
     let Occurrence { start, end, kind, .. } = *occurrence;
     let mut left = Left { start: latest(network, start), ..Left::default() };

@@ -27,8 +27,8 @@ use crate::convert::Converter;
 use crate::document::Document;
 use crate::errands::{self, Errand};
 use crate::feedback::feedback;
+use crate::judged::{Judged, judge};
 use crate::lines::Encoding;
-use crate::mission::{Mission, judge};
 use crate::requests::{self, Reply};
 use crate::transport::{Incoming, Outgoing, read, send, write};
 
@@ -53,7 +53,7 @@ struct Verdicts {
     uri: String,
     revision: u64,
     text: String,
-    missions: Vec<Mission>,
+    missions: Vec<Judged>,
     diagnostics: Vec<Diagnostic>,
 }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use kirk_compiler::Span;
 
 use crate::analysis::Analysis;
-use crate::mission::{Mission, Occurrence};
+use crate::judged::{Judged, Occurrence};
 
 /// The newest text of a document and the last missions known.
 #[derive(Clone, Debug)]
@@ -13,14 +13,14 @@ pub struct View {
     /// The newest text.
     pub analysis: Arc<Analysis>,
     /// The missions of this text, or of the last that had any.
-    pub missions: Arc<Vec<Mission>>,
+    pub missions: Arc<Vec<Judged>>,
     /// From the text of the missions to the newest.
     pub shift: Shift,
 }
 
 impl View {
     /// What occurs at a place of the newest text: a call, an operator, the name of a program that is started.
-    pub fn occurrences(&self, span: Span) -> Vec<(&Mission, &Occurrence)> {
+    pub fn occurrences(&self, span: Span) -> Vec<(&Judged, &Occurrence)> {
         let Some(before) = self.shift.back(span) else { return Vec::new() };
         let mut found = Vec::new();
         for mission in self.missions.iter() {

@@ -47,7 +47,7 @@ pub fn treatments(network: &Network) -> Vec<Treatment> {
             }
             _ => {
                 let start = merged.label(reduction.event_of[place.node as usize]);
-                let (low, high) = (seconds(place.earliest), seconds(place.latest));
+                let (low, high) = (place.earliest, place.latest);
                 format!(
                     "its news is not needed: whenever it is heard, it happens {low} to {high} s after `{start}`"
                 )

@@ -37,7 +37,7 @@ pub struct Column {
 }
 
 /// What came out.
-pub enum Outcome {
+pub enum Optimized {
     /// The amounts, in microseconds, by number.
     Optimum(BTreeMap<usize, f64>),
     /// There are none.
@@ -52,9 +52,9 @@ const MICROS: f64 = 1e6;
 const MOST: f64 = 1e8;
 
 /// The cheapest amounts of these, with all else at nothing, that keep all of `rows`.
-pub fn solve(columns: &BTreeMap<usize, Column>, rows: &[&Inequality]) -> Outcome {
+pub fn solve(columns: &BTreeMap<usize, Column>, rows: &[&Inequality]) -> Optimized {
     if columns.is_empty() {
-        return Outcome::Optimum(BTreeMap::new());
+        return Optimized::Optimum(BTreeMap::new());
     }
     let mut variables = variables!();
     let heaviest = columns.values().map(|column| column.weight).max().unwrap_or(1) as f64;
@@ -77,10 +77,10 @@ pub fn solve(columns: &BTreeMap<usize, Column>, rows: &[&Inequality]) -> Outcome
         model.add_constraint(sum.geq(row.least as f64 / MICROS));
     }
     match model.solve() {
-        Ok(solution) => Outcome::Optimum(
+        Ok(solution) => Optimized::Optimum(
             variable_of.iter().map(|(&knob, &amount)| (knob, solution.value(amount) * MICROS)).collect(),
         ),
-        Err(ResolutionError::Infeasible) => Outcome::Infeasible,
-        Err(_) => Outcome::Failed,
+        Err(ResolutionError::Infeasible) => Optimized::Infeasible,
+        Err(_) => Optimized::Failed,
     }
 }

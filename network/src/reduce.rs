@@ -28,19 +28,19 @@ pub struct Reduction {
     /// What each node of `stnu` stands for: an executable event, or the contingent event at the root of a group.
     pub event_of: Vec<EventId>,
     /// Where each event of the network is.
-    pub places: Vec<Place>,
+    pub places: Vec<Whereabouts>,
     pub(crate) sources: Vec<Source>,
 }
 
-/// Where an event is: truly in `[earliest, latest]` (microseconds) after the time of `node`.
+/// Where an event is: truly in `[earliest, latest]` after the time of `node`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct Whereabouts {
     /// A node of the plain STNU.
     pub node: u32,
     /// The least the event comes after the node (often negative: before it).
-    pub earliest: i64,
+    pub earliest: Duration,
     /// The most the event comes after the node.
-    pub latest: i64,
+    pub latest: Duration,
     /// The contingent event by whose news the node happens, if the node is the moment of acting on news.
     pub heard_by: Option<EventId>,
     /// The first of the events at a fixed distance from one another that share this node; the event itself otherwise.
@@ -109,7 +109,8 @@ impl Reduction {
         for (node, &event) in self.event_of.iter().enumerate() {
             let place = self.places[event.index()];
             let mut label = merged.label(event).to_string();
-            let late = place.node == node as u32 && (place.earliest, place.latest) != (0, 0);
+            let late = place.node == node as u32
+                && (place.earliest, place.latest) != (Duration::ZERO, Duration::ZERO);
             if late {
                 label.push('\'');
                 while merged.find(&label).is_some() {
@@ -168,10 +169,10 @@ struct BestNews {
     rivals: bool,
 }
 
-impl Place {
+impl Whereabouts {
     /// True if the event is not known the moment it happens: news of its children may tell of it first, or more.
     fn is_heard_late(&self) -> bool {
-        self.earliest != self.latest || self.heard_by.is_some() && self.latest != 0
+        self.earliest != self.latest || self.heard_by.is_some() && self.latest != Duration::ZERO
     }
 }
 
@@ -179,7 +180,7 @@ struct Reducer<'a> {
     network: &'a Network,
     progress: Option<&'a Progress>,
     trees: Trees,
-    places: Vec<Option<Place>>,
+    places: Vec<Option<Whereabouts>>,
     event_of: Vec<EventId>,
     links: Vec<Link>,
 }
@@ -204,7 +205,7 @@ impl<'a> Reducer<'a> {
                 self.place_group(event)?;
             }
         }
-        let places: Vec<Place> = self.places.iter().copied().flatten().collect();
+        let places: Vec<Whereabouts> = self.places.iter().copied().flatten().collect();
         debug_assert_eq!(places.len(), self.network.events().len());
         let (edges, sources) = self.edges(&places)?;
         let stnu = Stnu { nodes: self.event_of.len() as u32, edges, links: self.links };
@@ -226,8 +227,15 @@ impl<'a> Reducer<'a> {
                     (self.event_of.len() as u32 - 1, 0, 0)
                 }
             };
-            let place =
-                Place { node, earliest, latest, heard_by: None, root: event, base: event, inexact: false };
+            let place = Whereabouts {
+                node,
+                earliest: Duration::from_micros(earliest),
+                latest: Duration::from_micros(latest),
+                heard_by: None,
+                root: event,
+                base: event,
+                inexact: false,
+            };
             self.places[event.index()] = Some(place);
         }
         Ok(())
@@ -304,10 +312,10 @@ impl<'a> Reducer<'a> {
             }
         }
         for (event, offset) in group {
-            let place = Place {
+            let place = Whereabouts {
                 node,
-                earliest: add(lower, offset)?,
-                latest: add(upper, offset)?,
+                earliest: Duration::from_micros(add(lower, offset)?),
+                latest: Duration::from_micros(add(upper, offset)?),
                 heard_by: news.as_ref().map(|news| news.of).filter(|_| node != activation),
                 root,
                 base,
@@ -345,7 +353,7 @@ impl<'a> Reducer<'a> {
     /// The window of `event` after the node of its ancestor `base`.
     fn window(&self, event: EventId, base: EventId) -> Result<(i64, i64), TooLarge> {
         let place = self.place(base);
-        self.path(event, base, (place.earliest, place.latest))
+        self.path(event, base, (place.earliest.as_micros(), place.latest.as_micros()))
     }
 
     /// The window of `event` if its ancestor `base` has this one.
@@ -366,14 +374,14 @@ impl<'a> Reducer<'a> {
     }
 
     /// Parents are placed before their children.
-    fn place(&self, event: EventId) -> Place {
+    fn place(&self, event: EventId) -> Whereabouts {
         match self.places[event.index()] {
             Some(place) => place,
             None => unreachable!("a contingent event is placed after its activation"),
         }
     }
 
-    fn edges(&self, places: &[Place]) -> Result<(Vec<Edge>, Vec<Source>), ReduceError> {
+    fn edges(&self, places: &[Whereabouts]) -> Result<(Vec<Edge>, Vec<Source>), ReduceError> {
         let mut edges = Vec::new();
         let mut sources = Vec::new();
         for (node, _) in self.event_of.iter().enumerate().skip(1) {
@@ -395,7 +403,7 @@ impl<'a> Reducer<'a> {
                     continue;
                 }
                 let (from, to) = (places[from.index()], places[to.index()]);
-                let weight = add(add(weight, -to.latest)?, from.earliest)?;
+                let weight = add(add(weight, -to.latest.as_micros())?, from.earliest.as_micros())?;
                 // Both at the origin: two events of the past.
                 if from.node != to.node {
                     edges.push(Edge { from: from.node, to: to.node, weight });

@@ -97,12 +97,12 @@ pub struct Repairs {
     /// The knobs that cannot settle it alone, in order.
     pub not_alone: Vec<Knob>,
     /// Whether there could be more, or better ones.
-    pub ended: Ended,
+    pub extent: Extent,
 }
 
 /// Why the search ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ended {
+pub enum Extent {
     /// There is nothing cheaper, or there are as many as were asked for.
     Complete,
     /// The rounds were used up.
@@ -113,7 +113,7 @@ pub enum Ended {
 ///
 /// Each is proven: with its changes [`check`](crate::check::check) says "yes", and with any one of them less by a unit (by a microsecond, where it
 /// is between the last whole unit and its limit; left out, where that is all there is) it says "no". The first is the cheapest of
-/// all of whole units, if the search ended [`Ended::Complete`], no chain has late news, and no requirement that may change
+/// all of whole units, if the search ended [`Extent::Complete`], no chain has late news, and no requirement that may change
 /// makes an event one with something heard late. In a chain with late news the lengths of the reduction may switch at any change, and what a conflict
 /// says about other values is a guess; the repair is proven and no change in it can be less, but another may be cheaper.
 ///
@@ -164,7 +164,7 @@ pub fn repairs(
         search.give_up();
     }
     let least = least_changes(network, &touching)?;
-    let mut singles: BTreeMap<Knob, Plan> = BTreeMap::new();
+    let mut singles: BTreeMap<Knob, Turns> = BTreeMap::new();
     for (knob, change) in touching.into_iter().zip(least) {
         match change.and_then(|change| search.single(&change)) {
             Some(plan) => _ = singles.insert(knob, plan),
@@ -187,8 +187,8 @@ pub fn repairs(
         |knob: &Knob| repairs.iter().any(|it| it.changes.len() == 1 && it.changes[0].knob == *knob);
     not_alone.retain(|knob| !is_enough(knob));
     not_alone.sort();
-    let ended = if search.gave_up() { Ended::OutOfRounds } else { Ended::Complete };
-    Ok(Some(Repairs { repairs, not_alone, ended }))
+    let extent = if search.gave_up() { Extent::OutOfRounds } else { Extent::Complete };
+    Ok(Some(Repairs { repairs, not_alone, extent }))
 }
 
 /// The knobs that have a part in every conflict, and those that cannot settle all of them alone.
@@ -207,10 +207,10 @@ fn with_a_part_in_all(
 }
 
 /// By how much each knob is turned, by its number, in microseconds: those that are turned at all.
-type Plan = BTreeMap<usize, i64>;
+type Turns = BTreeMap<usize, i64>;
 
 /// The knobs of a plan.
-fn knobs(plan: &Plan) -> Vec<usize> {
+fn knobs(plan: &Turns) -> Vec<usize> {
     plan.keys().copied().collect()
 }
 
@@ -218,16 +218,16 @@ fn knobs(plan: &Plan) -> Vec<usize> {
 ///
 /// What is best without certain knobs costs no less than what is best with them. So the cheapest without knobs of the one
 /// before is next, whichever of them it does without.
-fn cheapest(search: &mut Search<'_>, known: Vec<Plan>, limit: usize) -> Vec<Plan> {
-    let mut plans: BTreeMap<Vec<usize>, Plan> = known.into_iter().map(|plan| (knobs(&plan), plan)).collect();
+fn cheapest(search: &mut Search<'_>, known: Vec<Turns>, limit: usize) -> Vec<Turns> {
+    let mut plans: BTreeMap<Vec<usize>, Turns> = known.into_iter().map(|plan| (knobs(&plan), plan)).collect();
     let mut taken: BTreeSet<Vec<usize>> = BTreeSet::new();
     let mut seen: BTreeSet<BTreeSet<usize>> = BTreeSet::new();
-    let mut open = BinaryHeap::from([Reverse((0_u128, BTreeSet::new(), None::<Plan>))]);
+    let mut open = BinaryHeap::from([Reverse((0_u128, BTreeSet::new(), None::<Turns>))]);
     while taken.len() < limit
         && let Some(Reverse((_, without, plan))) = open.pop()
     {
         let Some(plan) = plan else {
-            let is_free = |plan: &&Plan| plan.keys().all(|knob| !without.contains(knob));
+            let is_free = |plan: &&Turns| plan.keys().all(|knob| !without.contains(knob));
             let best = plans.values().filter(is_free).min_by_key(|plan| (search.cost(plan), plan.len()));
             if let Some(plan) = search.least(&without, best.cloned()) {
                 plans.insert(knobs(&plan), plan.clone());
@@ -249,7 +249,7 @@ fn cheapest(search: &mut Search<'_>, known: Vec<Plan>, limit: usize) -> Vec<Plan
             }
         }
     }
-    let mut plans: Vec<Plan> = plans.into_values().collect();
+    let mut plans: Vec<Turns> = plans.into_values().collect();
     plans.sort_by_cached_key(|plan| (search.cost(plan), plan.len(), knobs(plan)));
     plans
 }

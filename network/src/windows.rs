@@ -16,7 +16,7 @@ use crate::check::{Verdict, check};
 use crate::dispatchable::{Consequences, consequences};
 use crate::merge::merge;
 use crate::model::{Delay, Network};
-use crate::reduce::{Place, Reduction, reduce};
+use crate::reduce::{Reduction, Whereabouts, reduce};
 use crate::stnu::{Edge, Link, Rows, Stnu, add};
 use crate::time::Time;
 
@@ -48,10 +48,10 @@ pub(crate) fn of_reduction(reduction: &Reduction) -> Option<Vec<Window>> {
     let followed = consequences(stnu).ok()??;
     let least = shortest(stnu, &projected(stnu, &followed, |link| link.lower), Direction::ToOrigin)?;
     let most = shortest(stnu, &projected(stnu, &followed, |link| link.upper), Direction::FromOrigin)?;
-    let window = |place: &Place| {
-        let earliest = add(-least[place.node as usize]?, place.earliest).ok()?;
+    let window = |place: &Whereabouts| {
+        let earliest = add(-least[place.node as usize]?, place.earliest.as_micros()).ok()?;
         let latest = match most[place.node as usize] {
-            Some(latest) => Some(Time::from_micros(add(latest, place.latest).ok()?)),
+            Some(latest) => Some(Time::from_micros(add(latest, place.latest.as_micros()).ok()?)),
             None => None,
         };
         Some(Window { earliest: Time::from_micros(earliest), latest })

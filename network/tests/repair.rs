@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 
 use kirk_network::least::could_settle;
 use kirk_network::merge::merge;
-use kirk_network::repair::{Allowed, Ended, ONE, Options, Repair, Repairs, ours, repairs};
+use kirk_network::repair::{Allowed, Extent, ONE, Options, Repair, Repairs, ours, repairs};
 use kirk_network::slack::bounds;
 use kirk_network::vary::{Change, Knob, changed};
 use kirk_network::{Bound, Delay, Duration, EventId, Network, Part, Requirement, Verdict, check, json};
@@ -216,7 +216,7 @@ fn hold_to_promises(network: &Network, allowed: &[Allowed], limit: usize, found:
     let could: BTreeSet<&Knob> =
         allowed.iter().map(|it| &it.knob).filter(|knob| !found.not_alone.contains(knob)).collect();
     assert!(
-        found.ended == Ended::OutOfRounds || found.repairs.len() >= could.len().min(limit),
+        found.extent == Extent::OutOfRounds || found.repairs.len() >= could.len().min(limit),
         "{}",
         context()
     );
@@ -261,7 +261,7 @@ fn no_repair_in_whole_seconds_is_cheaper() {
             allowed.iter().map(|it| (it.knob.parts(), it.weight)).collect::<Vec<_>>()
         );
         hold_to_promises(&network, &allowed, WELL.limit, &found, &context);
-        assert_eq!(found.ended, Ended::Complete, "{context}");
+        assert_eq!(found.extent, Extent::Complete, "{context}");
         if let Some(repair) = found.repairs.first()
             && let Some(amounts) = exhausted(&network, &allowed, repair.cost)
         {
@@ -399,7 +399,7 @@ fn every_repair_is_proven_and_no_change_in_it_can_be_less() {
         lists += 1;
         joint += usize::from(found.repairs.iter().any(|repair| repair.changes.len() > 1));
         several += usize::from(found.repairs.len() == 3);
-        gave_up += usize::from(found.ended == Ended::OutOfRounds);
+        gave_up += usize::from(found.extent == Extent::OutOfRounds);
     }
     let counts = format!(
         "{lists} lists, {joint} joint, {several} of three, {gave_up} given up, {any} for want of a cheap one"
@@ -414,7 +414,7 @@ fn second_units(network: &Network, knobs: Vec<Knob>) -> Vec<Allowed> {
 
 fn lines(network: &Network, allowed: &[Allowed]) -> Vec<String> {
     let found = repairs(network, allowed, &WELL).unwrap().unwrap();
-    assert_eq!(found.ended, Ended::Complete);
+    assert_eq!(found.extent, Extent::Complete);
     found.repairs.iter().map(shown).collect()
 }
 
@@ -499,7 +499,7 @@ fn where_no_knob_has_a_part_in_the_conflict_there_is_nothing_to_propose() {
     let network = json::read(text).unwrap();
     let knob = Knob::of(Part::RequirementUpper(1)).unwrap();
     let found = repairs(&network, &second_units(&network, vec![knob.clone()]), &WELL).unwrap().unwrap();
-    assert_eq!(found, Repairs { repairs: vec![], not_alone: vec![knob], ended: Ended::Complete });
+    assert_eq!(found, Repairs { repairs: vec![], not_alone: vec![knob], extent: Extent::Complete });
 }
 
 #[test]
@@ -532,7 +532,7 @@ fn no_rounds_are_not_enough_and_that_is_said() {
     let network = json::read(text).unwrap();
     let none = Options { limit: 3, rounds: 0, ..WELL };
     let found = repairs(&network, &second_units(&network, ours(&network)), &none).unwrap().unwrap();
-    assert_eq!((found.repairs.len(), found.ended), (2, Ended::OutOfRounds));
+    assert_eq!((found.repairs.len(), found.extent), (2, Extent::OutOfRounds));
 }
 
 /// One after the other, each too short by 2 s: `count` of them.
@@ -575,11 +575,11 @@ fn what_has_many_conflicts_is_settled_by_as_many_changes_and_by_none_alone() {
         assert!(judge(&changed(&network, &first.changes).unwrap()), "{count}");
         assert_eq!(found.not_alone.len(), allowed.len(), "{count}");
         // That no others were looked for is said.
-        assert_eq!(found.ended == Ended::OutOfRounds, count > 50, "{count}");
+        assert_eq!(found.extent == Extent::OutOfRounds, count > 50, "{count}");
     }
     let network = windows(300);
     let allowed = second_units(&network, ours(&network));
     let hasty = Options { rounds: 40, patience: 40, ..Options::default() };
     let found = repairs(&network, &allowed, &hasty).unwrap().unwrap();
-    assert_eq!((found.repairs.len(), found.ended), (0, Ended::OutOfRounds));
+    assert_eq!((found.repairs.len(), found.extent), (0, Extent::OutOfRounds));
 }

@@ -32,7 +32,7 @@ use std::sync::Arc;
 
 use flight::InFlight;
 use kirk_network::precedence::Precedence;
-use kirk_network::reduce::{Place, Reduction};
+use kirk_network::reduce::{Reduction, Whereabouts};
 use kirk_network::stnu::{Link, Rows};
 use kirk_network::{Dispatchable, Duration, EventId, Interval, Network, Time};
 pub use replan::Adoption;
@@ -509,7 +509,6 @@ fn window(link: &Link, activated: Time) -> Interval {
 }
 
 /// When an event happens whose node of the plan is executed at a time.
-fn whereabouts(place: &Place, executed: Time) -> Interval {
-    let [earliest, latest] = [place.earliest, place.latest].map(Duration::from_micros);
-    Interval::at(executed).later(earliest, latest)
+fn whereabouts(place: &Whereabouts, executed: Time) -> Interval {
+    Interval::at(executed).later(place.earliest, place.latest)
 }

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use kirk_network::Conflict;
-use kirk_network::program::{Column, Inequality, Outcome, solve};
+use kirk_network::program::{Column, Inequality, Optimized, solve};
 
 use crate::model::AgentId;
 use crate::promise::Promise;
@@ -187,14 +187,14 @@ const MORE: u64 = 1000;
 fn program(count: usize, cuts: &[Cut], goal: Goal) -> Solved {
     let all: Vec<usize> = (0..cuts.len()).collect();
     match relaxed(count, cuts, &all, goal) {
-        Outcome::Optimum(amounts) => rounded(count, cuts, &amounts).map_or(Solved::Lost, Solved::Ends),
-        Outcome::Infeasible => Solved::Core(times_of(cuts, irreducible(count, cuts, all))),
-        Outcome::Failed => Solved::Lost,
+        Optimized::Optimum(amounts) => rounded(count, cuts, &amounts).map_or(Solved::Lost, Solved::Ends),
+        Optimized::Infeasible => Solved::Core(times_of(cuts, irreducible(count, cuts, all))),
+        Optimized::Failed => Solved::Lost,
     }
 }
 
 /// By amounts: a promise is its beginning and its width.
-fn relaxed(count: usize, cuts: &[Cut], rows: &[usize], goal: Goal) -> Outcome {
+fn relaxed(count: usize, cuts: &[Cut], rows: &[usize], goal: Goal) -> Optimized {
     let most = kirk_network::Duration::MAX.as_micros();
     let column = |end: usize| {
         let matters = (end % 2 == 1) == (goal == Goal::Narrow);
@@ -205,7 +205,7 @@ fn relaxed(count: usize, cuts: &[Cut], rows: &[usize], goal: Goal) -> Outcome {
     let rows: Vec<Inequality> = rows.iter().map(|&row| inequality(&cuts[row])).collect();
     // What mentions no promise holds or does not, whatever the promises.
     if rows.iter().any(|row| row.terms.is_empty() && row.least > 0) {
-        return Outcome::Infeasible;
+        return Optimized::Infeasible;
     }
     let rows: Vec<&Inequality> = rows.iter().filter(|row| !row.terms.is_empty()).collect();
     solve(&columns, &rows)
@@ -245,7 +245,7 @@ fn rounded(count: usize, cuts: &[Cut], amounts: &BTreeMap<usize, f64>) -> Option
 fn irreducible(count: usize, cuts: &[Cut], mut core: Vec<usize>) -> Vec<usize> {
     for at in (0..core.len()).rev() {
         let taken = core.remove(at);
-        if !matches!(relaxed(count, cuts, &core, Goal::Narrow), Outcome::Infeasible) {
+        if !matches!(relaxed(count, cuts, &core, Goal::Narrow), Optimized::Infeasible) {
             core.insert(at, taken);
         }
     }

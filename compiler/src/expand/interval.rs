@@ -5,14 +5,14 @@ use kirk_network::{Bound, Duration};
 use super::problem::Problem;
 use super::{Expander, Frame};
 use crate::ast::{Limits, Role, Value, ValueKind};
-use crate::episode::Interval;
+use crate::episode::Range;
 use crate::evaluate::{self, Reversed, Written};
 use crate::source::Span;
 use crate::typed::{Amount, AmountValue, Bounds, Expression, ExpressionKind};
 
 impl Expander<'_> {
     /// The numbers of an interval of durations, which are not negative.
-    pub(super) fn interval(&mut self, bounds: &Bounds, frame: &Frame<'_>, limits: Limits) -> Interval {
+    pub(super) fn interval(&mut self, bounds: &Bounds, frame: &Frame<'_>, limits: Limits) -> Range {
         let mut interval = self.signed_interval(bounds, frame, limits);
         let both = [
             (&bounds.lower, Some(interval.lower), Role::Lower(limits)),
@@ -35,7 +35,7 @@ impl Expander<'_> {
     }
 
     /// The numbers of an interval.
-    pub(super) fn signed_interval(&mut self, bounds: &Bounds, frame: &Frame<'_>, limits: Limits) -> Interval {
+    pub(super) fn signed_interval(&mut self, bounds: &Bounds, frame: &Frame<'_>, limits: Limits) -> Range {
         let low = Role::Lower(limits);
         let lower = match self.bound(&bounds.lower, frame, low) {
             Some(Bound::Finite(lower)) => lower,
@@ -62,7 +62,7 @@ impl Expander<'_> {
             self.wrong(evaluate::Problem::Reversed(problem), frame);
             upper = Bound::Finite(lower);
         }
-        Interval { lower, upper, lower_span, upper_span, span: bounds.span }
+        Range { lower, upper, lower_span, upper_span, span: bounds.span }
     }
 
     /// The values of arguments.

@@ -2,7 +2,7 @@
 
 use kirk_network::{Bound, Conflict, Duration, Share};
 
-use super::{Explain, Said};
+use super::{Explain, StoryStep};
 use crate::origins::Origin;
 use crate::repair::Changed;
 use crate::source::Span;
@@ -14,7 +14,7 @@ pub(crate) struct Problem<'a> {
     pub(crate) kind: Kind,
     /// What it consists of.
     pub(crate) bounds: Vec<Stated<'a>>,
-    pub(crate) story: &'a [Said],
+    pub(crate) story: &'a [StoryStep],
     /// What settles it alone; `None` if that was not looked for.
     pub(crate) enough: Option<&'a [Changed]>,
     /// What might settle it besides.

@@ -10,7 +10,7 @@ use crate::wording;
 
 /// A step of a story.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Said {
+pub struct StoryStep {
     /// The bound by which it leads on.
     pub part: Part,
     /// What is needed for it; negative where so much is there.
@@ -25,16 +25,16 @@ pub(super) fn steps(
     network: &Network,
     origins: &Origins,
     sources: &[Source],
-) -> Option<Vec<Said>> {
+) -> Option<Vec<StoryStep>> {
     let mut steps = walk(network, conflict)?;
     begin_with_a_need(&mut steps);
     let is_circle = is_circle(conflict);
-    let mut told: Vec<Said> = Vec::new();
+    let mut told: Vec<StoryStep> = Vec::new();
     for step in steps.iter().filter(|step| is_circle || step.needs != Duration::ZERO) {
         // Of what has no origin there is nothing to say.
         let Some(origin) = origins.of(step.part) else { continue };
         let text = wording::conflict::step(step, origin, sources, told.is_empty());
-        told.push(Said { part: step.part, needs: step.needs, text });
+        told.push(StoryStep { part: step.part, needs: step.needs, text });
     }
     Some(told)
 }

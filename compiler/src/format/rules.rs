@@ -1,7 +1,7 @@
 //! Which parts of a form stand on the line of its operator, and where the others go.
 
 use super::node::{Node, NodeKind, Where};
-use crate::words::{Layout, Part, Word, word};
+use crate::words::{Layout, Piece, Word, word};
 
 /// Where a part of a form that does not fit on one line goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,10 +64,10 @@ pub(super) fn glue(parts: &[&Node<'_>], values: &[bool], role: Role, index: usiz
         return if packed { Glue::Fill } else { aligned(index, after_keyword) };
     };
     match word.part(index - 1) {
-        Some(Part::Keywords) if after_keyword => Glue::Same,
+        Some(Piece::Keywords) if after_keyword => Glue::Same,
         _ if index >= body => Glue::Body,
-        Some(Part::Form(_)) if index > 1 => Glue::Fill,
-        Some(Part::Number) => Glue::Near,
+        Some(Piece::Form(_)) if index > 1 => Glue::Fill,
+        Some(Piece::Number) => Glue::Near,
         _ => Glue::Same,
     }
 }
@@ -79,14 +79,14 @@ fn aligned(index: usize, after_keyword: bool) -> Glue {
 /// Where the body of a form begins, if it may have one: earlier, if options are left out.
 fn body_from(word: &Word, parts: &[&Node<'_>]) -> Option<usize> {
     let (Layout::Hanging(first) | Layout::Block(first)) = word.layout else { return None };
-    let left_out = word.part(0) == Some(Part::Options) && !parts.get(1).is_some_and(|part| is_options(part));
+    let left_out = word.part(0) == Some(Piece::Options) && !parts.get(1).is_some_and(|part| is_options(part));
     Some(first - usize::from(left_out))
 }
 
 /// What the part of a list is.
 pub(super) fn role(parts: &[&Node<'_>], role: Role, index: usize) -> Role {
     let is_list =
-        |word: &Word| index > 0 && word.parts.get(index - 1).is_some_and(|(_, part)| *part == Part::List);
+        |word: &Word| index > 0 && word.parts.get(index - 1).is_some_and(|(_, part)| *part == Piece::List);
     match role {
         Role::Form if operator(parts).is_some_and(is_list) => Role::List,
         Role::List => Role::Slot,
@@ -120,7 +120,7 @@ fn is_always_broken(parts: &[&Node<'_>]) -> bool {
     let Some(word) = operator(parts) else { return false };
     match word.layout {
         Layout::Block(_) => body_from(word, parts).is_some_and(|body| {
-            let has_slots = |first| word.part(body - 1) != Some(Part::List) || is_filled(first);
+            let has_slots = |first| word.part(body - 1) != Some(Piece::List) || is_filled(first);
             parts.get(body).is_some_and(|first| has_slots(first))
         }),
         Layout::Packed => parts.iter().skip(2).any(|part| is_delay(part)),

@@ -3,7 +3,7 @@
 use kirk_network::{Bound, Duration};
 
 use super::problem::Problem;
-use crate::episode::{Episode, Interval, Kind};
+use crate::episode::{Episode, Kind, Range};
 
 /// Notes news that tells nothing, and upper bounds that are never reached.
 pub(super) fn notes_on_bounds(root: &Episode) -> Vec<Problem<'_>> {
@@ -76,7 +76,7 @@ fn useless_news(episode: &Episode) -> Option<Problem<'_>> {
     })
 }
 
-fn never_binds(duration: &Interval, most: Duration) -> Option<Problem<'static>> {
+fn never_binds(duration: &Range, most: Duration) -> Option<Problem<'static>> {
     let limit = duration.upper.finite().filter(|limit| *limit > most)?;
     Some(Problem::NeverBinds { bound: duration.upper_span, limit, most })
 }

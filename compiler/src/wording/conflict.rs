@@ -7,7 +7,7 @@ use kirk_network::{Bound, Conflict, Duration, Part, Share};
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::explain::problem::{Kind, Problem, Remedy, Says, Stated};
-use crate::explain::{Explain, Said};
+use crate::explain::{Explain, StoryStep};
 use crate::origins::{Origin, OriginKind, Side};
 use crate::repair::{Changed, amount};
 use crate::source::{Source, Span};
@@ -154,7 +154,7 @@ fn limit(origin: &Origin, word: &str, bound: &str) -> String {
 }
 
 /// A story in numbered lines.
-fn story(story: &[Said], kind: Kind) -> Vec<String> {
+fn story(story: &[StoryStep], kind: Kind) -> Vec<String> {
     if story.is_empty() {
         return Vec::new();
     }
@@ -163,7 +163,7 @@ fn story(story: &[Said], kind: Kind) -> Vec<String> {
         true => "Each of these comes after the one before, and the first after the last:".to_string(),
         false => "Step by step:".to_string(),
     }];
-    for (number, Said { text, .. }) in story.iter().enumerate() {
+    for (number, StoryStep { text, .. }) in story.iter().enumerate() {
         lines.extend(wrapped(&format!("{:>2}. ", number + 1), text));
     }
     if !is_circle {

@@ -1,11 +1,11 @@
 //! Every word, with the form it begins.
 
 use super::Layout::{Block, Hanging, Packed};
-use super::Part::{
+use super::Piece::{
     Bound, Class, Clause, Content, Flag, Form, Keywords, List, Name, Number, Occurrence, Options,
 };
 use super::Position::{Body, Condition, Constraint, Declaration, Declare, Definition, Duration, Event};
-use super::{Keyword, Layout, Part, Position, Word};
+use super::{Keyword, Layout, Piece, Position, Word};
 
 /// All words, in the order in which they are offered.
 pub const WORDS: &[Word] = &[
@@ -340,7 +340,7 @@ const fn flag(name: &'static str, about: &'static str) -> Keyword {
     keyword(name, Flag, "${1|t,nil|}", about)
 }
 
-const fn keyword(name: &'static str, value: Part, filled: &'static str, about: &'static str) -> Keyword {
+const fn keyword(name: &'static str, value: Piece, filled: &'static str, about: &'static str) -> Keyword {
     let filled = if filled.is_empty() { "${1}" } else { filled };
     Keyword { name, value, filled, about }
 }
@@ -348,7 +348,7 @@ const fn keyword(name: &'static str, value: Part, filled: &'static str, about: &
 /// A word whose form stands for a number.
 const fn number(
     name: &'static str,
-    parts: &'static [(&'static str, Part)],
+    parts: &'static [(&'static str, Piece)],
     filled: &'static str,
     about: &'static str,
 ) -> Word {
@@ -358,7 +358,7 @@ const fn number(
 /// A word whose form is a condition.
 const fn condition(
     name: &'static str,
-    parts: &'static [(&'static str, Part)],
+    parts: &'static [(&'static str, Piece)],
     filled: &'static str,
     about: &'static str,
 ) -> Word {

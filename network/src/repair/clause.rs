@@ -17,14 +17,14 @@ use crate::program::Inequality;
 use crate::reduce::{ReduceError, Reduction, reduce};
 use crate::stnu::TooLarge;
 
-use super::Plan;
+use super::Turns;
 use super::lever::{joins, roots, spread, way_to};
 
 /// Alternatives: at least one holds.
 pub(super) type Clause = Vec<Inequality>;
 
 /// That a form grows by at least so much from a plan on.
-fn beyond(plan: &Plan, terms: BTreeMap<usize, i64>, by: i64) -> Inequality {
+fn beyond(plan: &Turns, terms: BTreeMap<usize, i64>, by: i64) -> Inequality {
     let here = Inequality { terms, least: 0 };
     Inequality { least: i128::from(by) - here.lacks(plan), ..here }
 }
@@ -115,7 +115,7 @@ pub(super) fn ask(
     original: &Network,
     changed: &Network,
     levers: &Levers,
-    plan: &Plan,
+    plan: &Turns,
 ) -> Result<Answer, TooLarge> {
     let merged = merge_but(changed, &levers.apart);
     let site = Site { original, changed, merged: &merged, levers, plan };
@@ -153,7 +153,7 @@ struct Site<'a> {
     changed: &'a Network,
     merged: &'a Merged,
     levers: &'a Levers,
-    plan: &'a Plan,
+    plan: &'a Turns,
 }
 
 impl Site<'_> {

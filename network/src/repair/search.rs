@@ -12,12 +12,12 @@ use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 
 use crate::check::{Verdict, check};
 use crate::model::Network;
-use crate::program::{Column, Inequality, Outcome, solve};
+use crate::program::{Column, Inequality, Optimized, solve};
 use crate::vary::{Change, Probe, changed};
 
 use super::clause::{Answer, Clause, Levers, ask};
 use super::lever::Lever;
-use super::{Allowed, Plan, Repair};
+use super::{Allowed, Repair, Turns};
 
 /// A linear program of so many inequalities takes about as long as a verdict.
 const SMALL: usize = 32;
@@ -34,9 +34,9 @@ pub(super) struct Search<'a> {
     order: Vec<Clause>,
     clauses: Vec<Clause>,
     /// Plans that are known to do.
-    proven: BTreeSet<Plan>,
+    proven: BTreeSet<Turns>,
     /// Those of them in which every amount is known to be as small as the others allow.
-    settled: BTreeSet<Plan>,
+    settled: BTreeSet<Turns>,
     rounds: usize,
     /// So many rounds for one question, or it would use up what the others need.
     share: usize,
@@ -97,7 +97,7 @@ impl<'a> Search<'a> {
     /// Finds the conflicts that have no knob in common, one after the other, with the knobs of those before as far as they go. True
     /// if these are all.
     pub(super) fn gather(&mut self) -> bool {
-        let mut plan = Plan::new();
+        let mut plan = Turns::new();
         while let Some(changed) = self.carried_out(&plan) {
             if !self.spend(1) {
                 self.gave_up = true;
@@ -122,7 +122,7 @@ impl<'a> Search<'a> {
     }
 
     /// Turns the knobs of a clause as far as they go; false if they were so far.
-    fn put_far(&self, plan: &mut Plan, clause: &Clause) -> bool {
+    fn put_far(&self, plan: &mut Turns, clause: &Clause) -> bool {
         let knobs: BTreeSet<usize> = clause.iter().flat_map(|it| it.terms.keys()).copied().collect();
         let before = plan.len();
         for knob in knobs {
@@ -144,7 +144,7 @@ impl<'a> Search<'a> {
         self.gave_up
     }
 
-    pub(super) fn cost(&self, plan: &Plan) -> u128 {
+    pub(super) fn cost(&self, plan: &Turns) -> u128 {
         let cost = |(knob, amount): (&usize, &i64)| {
             u128::from(self.knobs[*knob].weight) * u128::from(amount.unsigned_abs())
         };
@@ -152,22 +152,22 @@ impl<'a> Search<'a> {
     }
 
     /// The plan of a change that is enough alone, rounded outward. `None` if that is no longer enough.
-    pub(super) fn single(&mut self, change: &Change) -> Option<Plan> {
+    pub(super) fn single(&mut self, change: &Change) -> Option<Turns> {
         let knob = self.knobs.iter().position(|lever| lever.knob == change.knob)?;
         let amount = self.knobs[knob].up(self.knobs[knob].amount_of(change)?)?;
-        let plan = Plan::from([(knob, amount)]);
+        let plan = Turns::from([(knob, amount)]);
         (amount > 0 && self.prove(&plan)).then_some(plan)
     }
 
     /// A plan as the changes it stands for.
-    pub(super) fn repair(&self, plan: &Plan) -> Repair {
+    pub(super) fn repair(&self, plan: &Turns) -> Repair {
         let mut changes = self.changes(plan);
         changes.sort_by(|a, b| a.knob.cmp(&b.knob));
         Repair { changes, cost: self.cost(plan) }
     }
 
     /// The cheapest plan that does without certain knobs, if it is cheaper than one that is known; else that one.
-    pub(super) fn least(&mut self, without: &BTreeSet<usize>, known: Option<Plan>) -> Option<Plan> {
+    pub(super) fn least(&mut self, without: &BTreeSet<usize>, known: Option<Turns>) -> Option<Turns> {
         let mut best = known;
         let reserve = self.rounds.saturating_sub(self.share);
         let mut open = BinaryHeap::from([Reverse((0_u128, 0_usize, Node::default()))]);
@@ -209,7 +209,7 @@ impl<'a> Search<'a> {
         &mut self,
         node: &Node,
         without: &BTreeSet<usize>,
-        best: &mut Option<Plan>,
+        best: &mut Option<Turns>,
     ) -> Option<(f64, Vec<Node>)> {
         let relaxed = self.relaxed(node, without)?;
         if self.is_no_cheaper(relaxed.cost, best.as_ref()) {
@@ -235,8 +235,8 @@ impl<'a> Search<'a> {
     }
 
     /// Keeps a plan, lowered where its node may have cheaper ones.
-    fn keep_if_cheaper(&mut self, best: &mut Option<Plan>, mut plan: Plan, at_least: f64) {
-        let is_cheaper = |search: &Search<'_>, plan: &Plan| {
+    fn keep_if_cheaper(&mut self, best: &mut Option<Turns>, mut plan: Turns, at_least: f64) {
+        let is_cheaper = |search: &Search<'_>, plan: &Turns| {
             best.as_ref().is_none_or(|best| search.cost(plan) < search.cost(best))
         };
         let is_least = self.monotone && self.cost(&plan) as f64 <= at_least + self.rounding(&plan);
@@ -264,7 +264,7 @@ impl<'a> Search<'a> {
     }
 
     /// True if a plan with any of its amounts a step lower would cost less by more than nobody can tell.
-    fn would_show(&self, plan: &Plan) -> bool {
+    fn would_show(&self, plan: &Turns) -> bool {
         let rounding = self.rounding(plan);
         plan.iter().all(|(&knob, &amount)| {
             let lever = &self.knobs[knob];
@@ -275,9 +275,9 @@ impl<'a> Search<'a> {
 
     /// Some plan of at most so many knobs, for want of a cheap one: every knob that has a part in a conflict as far as it goes, then each back as far as
     /// the others allow.
-    pub(super) fn any(&mut self, most: usize) -> Option<Plan> {
+    pub(super) fn any(&mut self, most: usize) -> Option<Turns> {
         const CONFLICTS: usize = 100;
-        let mut plan = Plan::new();
+        let mut plan = Turns::new();
         for _ in 0..CONFLICTS {
             if plan.len() > most {
                 return None;
@@ -300,12 +300,12 @@ impl<'a> Search<'a> {
     }
 
     /// What a microsecond more of each change costs: nobody can tell.
-    fn rounding(&self, plan: &Plan) -> f64 {
+    fn rounding(&self, plan: &Turns) -> f64 {
         let cost = self.cost(plan) as f64;
         plan.keys().map(|knob| self.knobs[*knob].weight as f64).sum::<f64>() + cost * 1e-9
     }
 
-    fn is_no_cheaper(&self, cost: f64, best: Option<&Plan>) -> bool {
+    fn is_no_cheaper(&self, cost: f64, best: Option<&Turns>) -> bool {
         best.is_some_and(|best| cost + self.rounding(best) >= self.cost(best) as f64)
     }
 
@@ -329,12 +329,12 @@ impl<'a> Search<'a> {
             return None;
         }
         match solve(&columns, &rows) {
-            Outcome::Optimum(amounts) => {
+            Optimized::Optimum(amounts) => {
                 let cost = amounts.iter().map(|(knob, amount)| amount * columns[knob].weight as f64).sum();
                 Some(Relaxed { amounts, cost })
             }
-            Outcome::Infeasible => None,
-            Outcome::Failed => {
+            Optimized::Infeasible => None,
+            Optimized::Failed => {
                 self.gave_up = true;
                 None
             }
@@ -357,8 +357,8 @@ impl<'a> Search<'a> {
 
     /// The amounts rounded outward to values that are wanted, so that all inequalities of the node hold. `None` if rounding
     /// violates one that cannot be mended.
-    fn rounded(&self, node: &Node, relaxed: &Relaxed) -> Option<Plan> {
-        let mut plan = Plan::new();
+    fn rounded(&self, node: &Node, relaxed: &Relaxed) -> Option<Turns> {
+        let mut plan = Turns::new();
         for (&knob, &amount) in &relaxed.amounts {
             let amount = self.knobs[knob].up(self.outward(knob, amount))?;
             if amount > 0 {
@@ -420,7 +420,7 @@ impl<'a> Search<'a> {
     }
 
     /// The verdict on a plan, if need be with a new clause that it violates.
-    fn judged(&mut self, plan: &Plan) -> Judged {
+    fn judged(&mut self, plan: &Turns) -> Judged {
         if self.proven.contains(plan) {
             return Judged::Controllable;
         }
@@ -446,7 +446,7 @@ impl<'a> Search<'a> {
     }
 
     /// The plan with every amount as small as the others allow: each by halving, the dearest first.
-    fn lowered(&mut self, mut plan: Plan) -> Plan {
+    fn lowered(&mut self, mut plan: Turns) -> Turns {
         const PASSES: usize = 3;
         for _ in 0..PASSES {
             let before = plan.clone();
@@ -465,7 +465,7 @@ impl<'a> Search<'a> {
         plan
     }
 
-    fn lower(&mut self, plan: &mut Plan, knob: usize) {
+    fn lower(&mut self, plan: &mut Turns, knob: usize) {
         // About so many it takes.
         const VERDICTS: usize = 4;
         self.spend(VERDICTS);
@@ -492,7 +492,7 @@ impl<'a> Search<'a> {
     }
 
     /// True if the network is controllable with a plan carried out, by a check of its own.
-    fn prove(&mut self, plan: &Plan) -> bool {
+    fn prove(&mut self, plan: &Turns) -> bool {
         let Some(changed) = self.carried_out(plan) else { return false };
         let proven = matches!(check(&changed), Ok(Verdict::Controllable));
         if proven {
@@ -502,16 +502,16 @@ impl<'a> Search<'a> {
     }
 
     /// The network with a plan carried out; `None` if that is none.
-    fn carried_out(&self, plan: &Plan) -> Option<Network> {
+    fn carried_out(&self, plan: &Turns) -> Option<Network> {
         self.in_order(plan).then(|| changed(self.network, &self.changes(plan)))?
     }
 
     /// True if with a plan carried out bounds are in order.
-    fn in_order(&self, plan: &Plan) -> bool {
+    fn in_order(&self, plan: &Turns) -> bool {
         self.order.iter().all(|clause| clause.iter().any(|it| it.lacks(plan) <= 0))
     }
 
-    fn changes(&self, plan: &Plan) -> Vec<Change> {
+    fn changes(&self, plan: &Turns) -> Vec<Change> {
         plan.iter().map(|(&knob, &amount)| self.knobs[knob].change(amount)).collect()
     }
 }

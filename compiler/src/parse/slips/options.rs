@@ -7,7 +7,7 @@ use crate::parse::problem::{KeywordSlip, Owner, Problem, Stray, Twice};
 use crate::problem::Problems;
 use crate::source::Span;
 use crate::words::unit;
-use crate::words::{Part, keyword};
+use crate::words::{Piece, keyword};
 
 /// The values of the known keywords as far as they can be guessed; what is wrong is reported.
 pub(in crate::parse) fn guessed<'a, const N: usize>(
@@ -129,7 +129,7 @@ fn worth_writing<'a>(near: &[&'a str], forms: &[Form]) -> Vec<&'a str> {
 
 /// True for the keywords that are answered by `t` or `nil`.
 fn is_flag(word: &str) -> bool {
-    keyword(word).is_some_and(|keyword| keyword.value == Part::Flag)
+    keyword(word).is_some_and(|keyword| keyword.value == Piece::Flag)
 }
 
 /// What stands where a keyword belongs: numbers without their keywords, or a unit after its number.

@@ -13,7 +13,7 @@ use crate::analysis::Unjudged;
 
 /// A program that can be started, with all that follows from it.
 #[derive(Clone, Debug)]
-pub struct Mission {
+pub struct Judged {
     /// The name of the program.
     pub program: String,
     /// Where it is defined.
@@ -55,7 +55,7 @@ pub enum Judgement {
 }
 
 /// Unfolds and judges every program a mission may start from, and says what there is to say about them.
-pub fn judge(unjudged: Unjudged) -> (Vec<Mission>, Vec<Diagnostic>) {
+pub fn judge(unjudged: Unjudged) -> (Vec<Judged>, Vec<Diagnostic>) {
     let Unjudged { mut model, roots, sources } = unjudged;
     let mut missions = Vec::new();
     let mut problems = Problems::default();
@@ -76,7 +76,7 @@ pub fn judge(unjudged: Unjudged) -> (Vec<Mission>, Vec<Diagnostic>) {
     (missions, told)
 }
 
-fn mission(root: &Episode, lowered: Lowered, sources: &[Source]) -> (Mission, Vec<Diagnostic>) {
+fn mission(root: &Episode, lowered: Lowered, sources: &[Source]) -> (Judged, Vec<Diagnostic>) {
     let (verdict, diagnostics) = match Explain::of(&lowered, sources).all() {
         Ok(told) if told.is_empty() => (Judgement::Controllable, told),
         Ok(told) => (Judgement::Uncontrollable, told),
@@ -90,11 +90,11 @@ fn mission(root: &Episode, lowered: Lowered, sources: &[Source]) -> (Mission, Ve
     }
     let windows = windows(&lowered.network);
     let mission =
-        Mission { program: root.name.clone(), name: root.span, lowered, occurrences, at, windows, verdict };
+        Judged { program: root.name.clone(), name: root.span, lowered, occurrences, at, windows, verdict };
     (mission, diagnostics)
 }
 
-impl Mission {
+impl Judged {
     /// When an event can happen.
     pub fn window(&self, event: EventId) -> Option<Window> {
         self.windows.as_ref().map(|windows| windows[event.index()])

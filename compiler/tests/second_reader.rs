@@ -5,7 +5,7 @@ mod common;
 
 use kirk_compiler::Source;
 use kirk_compiler::form::{Form, FormKind};
-use kirk_compiler::problem::Problems;
+use kirk_compiler::Problems;
 use kirk_compiler::read::read;
 
 #[test]

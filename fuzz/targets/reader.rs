@@ -1,7 +1,7 @@
 //! Any text is read, and laid out or refused; a second layout changes nothing.
 #![no_main]
 
-use kirk_compiler::problem::Problems;
+use kirk_compiler::Problems;
 use kirk_compiler::{Source, format, read};
 use libfuzzer_sys::fuzz_target;
 

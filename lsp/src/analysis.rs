@@ -8,7 +8,7 @@
 
 use kirk_compiler::ast::Program;
 use kirk_compiler::form::Form;
-use kirk_compiler::typed::{Model, Work};
+use kirk_compiler::{Model, Work};
 use kirk_compiler::{Code, Diagnostic, Front, Options, Severity, Source, Span, Symbols, front_in_order};
 
 use crate::lines::Lines;

@@ -63,7 +63,7 @@
 pub mod assume;
 mod blame;
 pub mod check;
-pub mod conflict;
+mod conflict;
 pub mod conflicts;
 pub mod controllability;
 pub mod dispatchable;
@@ -89,7 +89,7 @@ pub mod reduce;
 pub mod repair;
 pub mod rmpl;
 pub mod slack;
-pub mod source_map;
+mod source_map;
 pub mod stnu;
 pub mod text;
 pub mod time;

@@ -22,7 +22,7 @@ use kirk_network::{
     Verdict, check, dispatchable,
 };
 use oracle::random::{self, Random, Shape};
-use oracle::{closure, game};
+use oracle::{closure, game, joined};
 
 fn cases(usual: u64) -> u64 {
     std::env::var("KIRK_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(usual)
@@ -311,4 +311,28 @@ fn strongly_controllable(network: &Network) -> bool {
         }
     }
     false
+}
+
+#[test]
+fn events_are_one_that_are_painted_one() {
+    let shapes = [Shape::tiny(), Shape::tiny().chained(), Shape::medium(), Shape::medium().chained()];
+    let (joins, refused) = (Cell::new(0), Cell::new(0));
+    holds(4000, &shapes, |network, seed| {
+        let mut random = Random::new(seed);
+        let mut requirements = network.requirements().to_vec();
+        for requirement in requirements.iter_mut().filter(|_| random.percent(40)) {
+            (requirement.lower, requirement.upper) = (Duration::ZERO.into(), Duration::ZERO.into());
+        }
+        let network = random::with(network, requirements, network.contingents().to_vec());
+        let (merged, colours) = (merge(&network).event_of, joined::joined(&network));
+        let alike = |a: usize, b: usize| (merged[a] == merged[b]) == (colours[a] == colours[b]);
+        let count = network.events().len();
+        let zero = |bound: Bound| bound == Bound::Finite(Duration::ZERO);
+        for it in network.requirements().iter().filter(|it| zero(it.lower) && zero(it.upper)) {
+            let counted = if merged[it.from.index()] == merged[it.to.index()] { &joins } else { &refused };
+            counted.set(counted.get() + 1);
+        }
+        (0..count).all(|a| (0..count).all(|b| alike(a, b)))
+    });
+    assert!(joins.get() > 1_000 && refused.get() > 100, "{joins:?} joins, {refused:?} refused");
 }

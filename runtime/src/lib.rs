@@ -46,23 +46,23 @@
 //!
 //! Clocks, threads, sockets and files; names of forms (the compiler has them).
 
-pub mod activity;
+mod activity;
 mod aftermath;
 mod agenda;
-pub mod cause;
-pub mod checkpoint;
+mod cause;
+mod checkpoint;
 pub mod dispatcher;
 pub mod execution;
-pub mod executive;
-pub mod input;
+mod executive;
+mod input;
 pub mod journal;
-pub mod knowledge;
+mod knowledge;
 mod measured;
 pub mod nature;
 mod order;
-pub mod plan;
+mod plan;
 pub mod query;
-pub mod rebuild;
+mod rebuild;
 mod record;
 pub mod replay;
 pub mod simulate;
@@ -77,6 +77,7 @@ pub use execution::{Aftermath, Execution, Failure, How, Lost, Outcome, Row, Side
 pub use executive::{Executive, Output, Pending, Sending, Setup};
 pub use input::{Answer, Handled, Input, Reason, Why};
 pub use journal::{BadJournal, Clocks, Journal};
+pub use knowledge::{Fixed, Known};
 pub use nature::{Impossible, Temper};
 pub use order::Patience;
 pub use plan::{NoPlan, Plan};

@@ -8,8 +8,8 @@
 use std::io::{BufRead, BufReader, PipeReader, PipeWriter, Read, Write, pipe};
 
 use divan::{Bencher, black_box};
-use kirk_compiler::Source;
 use kirk_compiler::Problems;
+use kirk_compiler::Source;
 use kirk_lsp::{analyse, judge, serve};
 use kirk_network::generate::{Exponential, Lambda, SamplingOptions, controllable, sampling};
 use kirk_network::rmpl;

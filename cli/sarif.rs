@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use kirk_compiler::markdown;
+use kirk_compiler::code::markdown;
 use kirk_compiler::{Code, Diagnostic, Severity, Suggestion, explain};
 use serde_json::{Value, json};
 

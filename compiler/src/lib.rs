@@ -66,7 +66,7 @@
 mod analyse;
 pub mod ast;
 mod calculate;
-mod code;
+pub mod code;
 mod companions;
 mod diagnostic;
 pub mod episode;
@@ -92,7 +92,7 @@ pub mod words;
 mod written;
 
 pub use analyse::symbols::{Mention, Symbol, SymbolKind, Symbols, Uses};
-pub use code::{Code, explain, markdown};
+pub use code::{Code, explain};
 pub use companions::{Companion, companions};
 pub use diagnostic::{Diagnostic, Edit, Label, Severity, Suggestion, Text};
 pub use episode::{MAX_DEPTH, MAX_EPISODES};
@@ -102,8 +102,8 @@ pub use front::{Front, front, front_in_order};
 pub use kirk_network::nearest;
 pub use lower::{Lowered, events_of};
 pub use origins::{Origin, OriginKind, Origins, Point, Side, Statement, Subject};
-pub use sexpr::to_sexpr;
 pub use problem::Problems;
+pub use sexpr::to_sexpr;
 pub use source::{LineIndex, Source, Span};
 pub use typed::{Model, Work};
 pub use unfold::{Unfolded, unfold};

@@ -9,7 +9,7 @@ use crate::source::Span;
 use crate::wording::too_many;
 
 /// How many messages about one source are kept; the rest are counted.
-pub const MAX_PER_SOURCE: usize = 200;
+pub(crate) const MAX_PER_SOURCE: usize = 200;
 
 /// Collects the diagnostics of all phases: each (code, place) once, and a bounded number per source.
 #[derive(Debug, Default)]

@@ -3,9 +3,9 @@
 
 mod common;
 
+use kirk_compiler::Problems;
 use kirk_compiler::Source;
 use kirk_compiler::form::{Form, FormKind};
-use kirk_compiler::Problems;
 use kirk_compiler::read::read;
 
 #[test]

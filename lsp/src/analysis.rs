@@ -8,8 +8,8 @@
 
 use kirk_compiler::ast::Program;
 use kirk_compiler::form::Form;
-use kirk_compiler::{Model, Work};
 use kirk_compiler::{Code, Diagnostic, Front, Options, Severity, Source, Span, Symbols, front_in_order};
+use kirk_compiler::{Model, Work};
 
 use crate::lines::Lines;
 use crate::rename::edited;

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use kirk_compiler::episode::{Episode, Kind};
 use kirk_compiler::Problems;
+use kirk_compiler::episode::{Episode, Kind};
 use kirk_compiler::{Diagnostic, Explain, Lowered, Source, Span, Unfolded, events_of, too_large, unfold};
 use kirk_network::EventId;
 use kirk_network::stnu::TooLarge;

@@ -36,6 +36,7 @@ use kirk_network::reduce::{Reduction, Whereabouts};
 use kirk_network::stnu::{Link, Rows};
 use kirk_network::{Dispatchable, Duration, EventId, Interval, Network, Time};
 pub use replan::Adoption;
+pub(crate) use replan::Taken;
 
 use crate::agenda::Agenda;
 use crate::cause::Cause;

@@ -14,13 +14,13 @@ use kirk_network::{Bound, Duration, EventId, Interval, Network, Time};
 
 use crate::aftermath::aftermath;
 use crate::cause::Cause;
-use crate::dispatcher::{Adoption, Dispatcher, Reception, Settings, Strategy};
+use crate::dispatcher::{Dispatcher, Reception, Settings, Strategy, Taken};
 use crate::execution::{Aftermath, Execution, Failure, How, Outcome, Row};
 use crate::input::Input;
 use crate::journal::{BadJournal, Journal};
 use crate::knowledge::{Fixed, Knowledge, heard_now};
 use crate::plan::Plan;
-use crate::record::{and_fails, and_goes_on, broken_model, missed_window};
+use crate::record::missed_window;
 use crate::replay::{Replay, recover};
 
 /// An execution at a time.
@@ -283,24 +283,18 @@ impl Situation {
 
     /// News of an event that arrived by now, with nothing in flight.
     fn take(&mut self, event: EventId, at: Time) -> Result<Heard, Unheard> {
-        match self.dispatcher.handle_observation(at, event) {
-            Reception::Impossible { earliest: None, .. } => {
-                Err(Unheard::NotBegun { start: self.dispatcher.root(event) })
-            }
-            Reception::Impossible { earliest: Some(earliest), latest } => {
-                let said = broken_model(self.network(), event, at, earliest, latest);
-                self.dispatcher.handle_impossible(at, event);
-                let goes_on = plan_anew(&mut self.dispatcher, at) != Some(Adoption::NoPlan);
+        match self.dispatcher.hear_and_plan(at, event) {
+            Taken::NotBegun => Err(Unheard::NotBegun { start: self.dispatcher.root(event) }),
+            Taken::Broken { said, goes_on } => {
                 let aftermath = aftermath(&self.dispatcher, &self.so_far(), &[]);
                 if goes_on {
                     self.go_on(at);
                 } else {
                     self.ended = Some(Ended::NoPlan);
                 }
-                Ok(Heard::Broken(if goes_on { and_goes_on(&said) } else { and_fails(&said) }, aftermath))
+                Ok(Heard::Broken(said, aftermath))
             }
-            Reception::Accepted | Reception::Repeated | Reception::NotContingent => {
-                plan_anew(&mut self.dispatcher, at);
+            Taken::Possible => {
                 self.go_on(at);
                 Ok(Heard::Possible)
             }
@@ -354,7 +348,7 @@ fn early(mut dispatcher: Dispatcher, so_far: &SoFar) -> Vec<Option<Time>> {
                 // The least of each does not go together here: it shows nothing.
                 return vec![None; truth.len()];
             }
-            plan_anew(&mut dispatcher, time);
+            dispatcher.plan_at_once(time);
         }
         dispatcher.handle_timeout(now);
         for begun in confirm(&mut dispatcher, now) {
@@ -408,7 +402,7 @@ fn pass(dispatcher: &mut Dispatcher, now: Time, until: Option<Time>) {
     loop {
         dispatcher.handle_timeout(now);
         confirm(dispatcher, now);
-        plan_anew(dispatcher, now);
+        dispatcher.plan_at_once(now);
         match dispatcher.poll_timeout() {
             Some(next) if until.is_none_or(|until| next <= until) => now = next,
             _ => break,
@@ -429,15 +423,6 @@ fn confirm(dispatcher: &mut Dispatcher, now: Time) -> Vec<EventId> {
         dispatcher.handle_executed(now, event, now);
     }
     std::iter::from_fn(|| dispatcher.poll_fixed()).collect()
-}
-
-/// Planning anew takes no time here.
-fn plan_anew(dispatcher: &mut Dispatcher, now: Time) -> Option<Adoption> {
-    let mut last = None;
-    while let Some(rebuild) = dispatcher.poll_rebuild(now) {
-        last = Some(dispatcher.handle_rebuilt(rebuild.run()));
-    }
-    last
 }
 
 /// What is known at a time, by a record.

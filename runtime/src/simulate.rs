@@ -6,12 +6,12 @@ use std::collections::BinaryHeap;
 use kirk_network::{EventId, Time};
 
 use crate::aftermath::aftermath;
-use crate::dispatcher::{Adoption, Dispatcher, Reception, Settings, Strategy};
+use crate::dispatcher::{Dispatcher, Settings, Strategy, Taken};
 use crate::execution::{Execution, Failure, Outcome};
 use crate::input::Reason;
 use crate::nature::{Impossible, Nature, Temper};
 use crate::plan::Plan;
-use crate::record::{all_over, and_fails, and_goes_on, broken_model, record};
+use crate::record::{all_over, record};
 
 /// What to simulate.
 #[derive(Clone, Debug, Default)]
@@ -139,29 +139,16 @@ impl Run<'_> {
 
     /// Takes news. False if the model does not allow it and the rest cannot be guaranteed: then the mission has failed.
     fn hear(&mut self, time: Time, event: EventId) -> bool {
-        let Reception::Impossible { earliest, latest } = self.dispatcher.handle_observation(time, event)
-        else {
-            self.plan_anew(time);
-            return true;
-        };
-        let earliest = earliest.unwrap_or(time);
-        let said = broken_model(self.dispatcher.network(), event, time, earliest, latest);
-        self.dispatcher.handle_impossible(time, event);
-        let goes_on = self.plan_anew(time) != Some(Adoption::NoPlan);
-        if self.broken.is_none() || !goes_on {
-            let detail = if goes_on { and_goes_on(&said) } else { and_fails(&said) };
-            let event = self.dispatcher.network().label(event).to_string();
-            self.broken = Some(Failure { event, time, reason: Reason::BrokenModel, detail });
+        match self.dispatcher.hear_and_plan(time, event) {
+            // Nature begins nothing that is not executed, so nothing is heard of it.
+            Taken::NotBegun | Taken::Possible => true,
+            Taken::Broken { said, goes_on } => {
+                if self.broken.is_none() || !goes_on {
+                    let event = self.dispatcher.network().label(event).to_string();
+                    self.broken = Some(Failure { event, time, reason: Reason::BrokenModel, detail: said });
+                }
+                goes_on
+            }
         }
-        goes_on
-    }
-
-    /// Planning anew takes no time here.
-    fn plan_anew(&mut self, now: Time) -> Option<Adoption> {
-        let mut last = None;
-        while let Some(rebuild) = self.dispatcher.poll_rebuild(now) {
-            last = Some(self.dispatcher.handle_rebuilt(rebuild.run()));
-        }
-        last
     }
 }

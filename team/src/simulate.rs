@@ -382,9 +382,7 @@ impl<'a> Run<'a> {
             Reception::Accepted | Reception::Repeated | Reception::NotContingent => {}
         }
         // Planning anew takes no time here.
-        while let Some(rebuild) = own.dispatcher.poll_rebuild(at) {
-            own.dispatcher.handle_rebuilt(rebuild.run());
-        }
+        own.dispatcher.plan_at_once(at);
     }
 
     fn push(&mut self, at: i64, happening: Happening) {

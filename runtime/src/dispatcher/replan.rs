@@ -5,12 +5,13 @@ use std::sync::Arc;
 use kirk_network::precedence::Precedence;
 use kirk_network::{EventId, Network, Time};
 
-use super::{Dispatcher, Settings, agenda, whereabouts};
+use super::{Dispatcher, Reception, Settings, agenda, whereabouts};
 use crate::cause::Cause;
 use crate::execution::How;
 use crate::knowledge::Knowledge;
 use crate::plan::Plan;
 use crate::rebuild::{Rebuild, Rebuilt};
+use crate::record::{and_fails, and_goes_on, broken_model};
 
 /// What became of a new plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,7 +24,43 @@ pub enum Adoption {
     TooLate,
 }
 
+/// What became of news that was planned with at once.
+pub(crate) enum Taken {
+    /// It is of what has not begun, which nothing can be heard of.
+    NotBegun,
+    /// The model allows it, or it says nothing new.
+    Possible,
+    /// The model rules it out: what is wrong with it, in a sentence, and whether the rest can still be guaranteed.
+    Broken { said: String, goes_on: bool },
+}
+
 impl Dispatcher {
+    /// Takes news where planning takes no time, also if the model rules it out.
+    pub(crate) fn hear_and_plan(&mut self, now: Time, event: EventId) -> Taken {
+        match self.handle_observation(now, event) {
+            Reception::Impossible { earliest: None, .. } => Taken::NotBegun,
+            Reception::Impossible { earliest: Some(earliest), latest } => {
+                let said = broken_model(self.network(), event, now, earliest, latest);
+                self.handle_impossible(now, event);
+                let goes_on = self.plan_at_once(now) != Some(Adoption::NoPlan);
+                Taken::Broken { said: if goes_on { and_goes_on(&said) } else { and_fails(&said) }, goes_on }
+            }
+            Reception::Accepted | Reception::Repeated | Reception::NotContingent => {
+                self.plan_at_once(now);
+                Taken::Possible
+            }
+        }
+    }
+
+    /// Plans anew as long as news calls for it, where that takes no time. Returns what became of the last plan.
+    pub fn plan_at_once(&mut self, now: Time) -> Option<Adoption> {
+        let mut last = None;
+        while let Some(rebuild) = self.poll_rebuild(now) {
+            last = Some(self.handle_rebuilt(rebuild.run()));
+        }
+        last
+    }
+
     /// What is to be planned anew because of news, if anything is. While events are in flight it is not known from where
     /// to plan, so that has to wait.
     pub fn poll_rebuild(&mut self, now: Time) -> Option<Rebuild> {

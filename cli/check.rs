@@ -13,6 +13,7 @@ use crate::news::treatment;
 use crate::output::{Status, print, print_line};
 use crate::report::Reporter;
 use crate::sarif::Log;
+use crate::team;
 
 pub(crate) fn check(arguments: &Check, common: &Common) -> io::Result<Status> {
     let mut worst = Status::Yes;
@@ -21,8 +22,8 @@ pub(crate) fn check(arguments: &Check, common: &Common) -> io::Result<Status> {
         let judged = judge_assuming(&mut input, arguments.delays, arguments.theory);
         worst = worst.max(match &judged {
             None => Status::Wrong,
-            Some(Judged { conflict: None, .. }) => Status::Yes,
-            Some(Judged { conflict: Some(_), .. }) => Status::No,
+            Some(judged) if judged.is_yes() => Status::Yes,
+            Some(_) => Status::No,
         });
         let reporter = Reporter::new(&input.sources);
         let document = || CheckJson::new(&file, &input, judged.as_ref(), arguments.delays, &reporter);
@@ -33,7 +34,9 @@ pub(crate) fn check(arguments: &Check, common: &Common) -> io::Result<Status> {
             CheckFormat::Text => {
                 reporter.show(&input.diagnostics, common)?;
                 print_line(&verdict_line(&file, &input, judged.as_ref(), arguments))?;
-                if common.verbose
+                if let Some(team) = judged.as_ref().and_then(|judged| judged.team.as_ref()) {
+                    print(&team::promised(team, common.verbose))?;
+                } else if common.verbose
                     && let Some(network) = &input.network
                 {
                     print(&treatment(network))?;
@@ -70,7 +73,11 @@ fn verdict_line(file: &str, input: &Loaded, judged: Option<&Judged>, arguments: 
         return format!("{file}: {errors} error{plural}");
     };
     let network = &judged.merged;
-    let verdict = if judged.conflict.is_none() { "controllable" } else { "not controllable" };
+    let verdict = match &judged.team {
+        Some(team) => team::verdict(team),
+        None if judged.conflict.is_none() => "controllable".to_string(),
+        None => "not controllable".to_string(),
+    };
     let program = input.program(&arguments.selection);
     let name = if input.compilation().is_some() { format!("`{program}` is ") } else { String::new() };
     let count = |number: usize, what: &str| format!("{number} {what}{}", if number == 1 { "" } else { "s" });

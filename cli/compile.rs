@@ -52,6 +52,9 @@ fn emit(arguments: &Compile, input: &mut Loaded) -> Result<String, Refusal> {
     if let Stage::Ast | Stage::Episodes = arguments.emit {
         return emit_program(arguments, input);
     }
+    if arguments.emit != Stage::Stnu {
+        input.for_one_alone(&format!("`--emit {}`", stage_name(arguments.emit)));
+    }
     let Some(network) = &input.network else { return Err(Refusal::Input) };
     let merged = merge(network).network;
     if arguments.emit == Stage::Stnu {

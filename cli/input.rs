@@ -5,7 +5,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use kirk_compiler::{
-    Companion, Compilation, Diagnostic, Options, Origins, Source, Span, companions, compile,
+    Companion, Compilation, Diagnostic, Options, Origins, Source, Span, Team, companions, compile,
 };
 use kirk_network::json::ReadProblem;
 use kirk_network::{Network, SourceMap, graphml, json, kinds, plain};
@@ -28,7 +28,8 @@ pub(crate) struct Loaded {
 /// What kind of input there is, and what is known of it besides the network.
 enum Content {
     /// RMPL: how far the compiler got, and if to a network, where its constraints come from and where its program is named.
-    Program { compilation: Box<Compilation>, origins: Option<(Origins, Span)> },
+    /// Then also who executes it, if it is not one alone.
+    Program { compilation: Box<Compilation>, origins: Option<(Origins, Span)>, team: Option<Team> },
     /// A network: where its constraints stand, and whether its name stands there or is that of its file.
     Network { origins: Box<Origins>, named: bool },
     /// Nothing that could be read.
@@ -287,11 +288,11 @@ fn program(sources: Vec<Source>, selection: &Selection) -> Loaded {
     let options = Options { package: selection.package.clone(), entry: selection.entry().to_string() };
     let mut compilation = compile(&sources, &options);
     let diagnostics = std::mem::take(&mut compilation.diagnostics);
-    let (network, origins) = match compilation.lowered.take() {
-        Some(plan) => (Some(plan.network), Some((plan.origins, plan.entry))),
-        None => (None, None),
+    let (network, origins, team) = match compilation.lowered.take() {
+        Some(plan) => (Some(plan.network), Some((plan.origins, plan.entry)), plan.team),
+        None => (None, None, None),
     };
-    let content = Content::Program { compilation: Box::new(compilation), origins };
+    let content = Content::Program { compilation: Box::new(compilation), origins, team };
     Loaded { sources, diagnostics, content, network }
 }
 
@@ -371,6 +372,20 @@ impl Loaded {
             Content::Program { origins: Some((_, program)), .. } => Some(*program),
             _ => None,
         }
+    }
+
+    /// Who executes it, if it is not one alone.
+    pub(crate) fn team(&self) -> Option<&Team> {
+        if let Content::Program { team, .. } = &self.content { team.as_ref() } else { None }
+    }
+
+    /// Refuses the mission of a team, as what is asked is known of one executive only.
+    pub(crate) fn for_one_alone(&mut self, asked: &str) {
+        let Some(team) = self.team() else { return };
+        let problem = Problem::ForOneAlone { asked, team: &team.name, agents: &team.agents };
+        let problem = problem.at(self.program_span().unwrap_or_default());
+        self.diagnostics.push(problem);
+        self.network = None;
     }
 
     /// True if it is a network file.

@@ -13,6 +13,7 @@ use crate::args::Delays;
 use crate::conflict::{ConflictJson, MemberJson, members, told};
 use crate::input::Loaded;
 use crate::report::{DiagnosticJson, Reporter};
+use crate::team::{self, TeamJson};
 
 /// The verdict on a network and how long it took.
 pub(crate) struct Judged {
@@ -20,9 +21,28 @@ pub(crate) struct Judged {
     /// All of them, each as it is told.
     told: Vec<Told>,
     seconds: f64,
+    /// Of a mission that a team executes: whether the team can.
+    pub(crate) team: Option<kirk_team::Mission>,
     pub(crate) merged: Network,
     /// What the conflict speaks of, if not the network of the input: the same with other delays.
     assumed: Option<Network>,
+}
+
+impl Judged {
+    /// True if it can be executed whatever happens, by whoever executes it.
+    pub(crate) fn is_yes(&self) -> bool {
+        self.conflict.is_none() && self.team.as_ref().is_none_or(|team| team.agreement().is_some())
+    }
+
+    /// Of a team.
+    pub(crate) fn by_team(
+        team: kirk_team::Mission,
+        (conflict, told): (Option<Conflict>, Vec<Told>),
+        seconds: f64,
+    ) -> Judged {
+        let merged = merge(team.team.network()).network;
+        Judged { conflict, told, seconds, team: Some(team), merged, assumed: None }
+    }
 }
 
 /// Decides; a conflict becomes one of the diagnostics. `None` if there is no network.
@@ -32,6 +52,12 @@ pub(crate) fn judge(input: &mut Loaded) -> Option<Judged> {
 
 /// Decides as if delays were as they are said to be.
 pub(crate) fn judge_assuming(input: &mut Loaded, delays: Delays, theory: bool) -> Option<Judged> {
+    if input.team().is_some() {
+        if delays != Delays::AsWritten {
+            input.for_one_alone("`--delays`");
+        }
+        return team::judge(input, theory);
+    }
     let network = input.network.as_ref()?;
     let start = Instant::now();
     let decided = match delays.assumption() {
@@ -60,7 +86,7 @@ pub(crate) fn judge_assuming(input: &mut Loaded, delays: Delays, theory: bool) -
             input.diagnostics.push(diagnostic);
         }
     }
-    Some(Judged { conflict, told: all, seconds, merged, assumed })
+    Some(Judged { conflict, told: all, seconds, team: None, merged, assumed })
 }
 
 impl Delays {
@@ -108,6 +134,9 @@ pub(crate) struct CheckJson<'a> {
     pub(crate) file: &'a str,
     #[serde(flatten)]
     pub(crate) verdict: VerdictJson,
+    /// Of a mission that a team executes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    team: Option<TeamJson<'a>>,
     diagnostics: Vec<DiagnosticJson<'a>>,
     conflict: Vec<MemberJson>,
     pub(crate) conflicts: Vec<ConflictJson<'a>>,
@@ -143,7 +172,7 @@ impl<'a> CheckJson<'a> {
             format: "kirk-check/1",
             file,
             verdict: VerdictJson {
-                controllable: judged.map(|judged| judged.conflict.is_none()),
+                controllable: judged.map(Judged::is_yes),
                 kind: delays.kind(),
                 events: merged.map_or(0, |network| network.events().len()),
                 requirements: merged.map_or(0, |network| network.requirements().len()),
@@ -151,6 +180,9 @@ impl<'a> CheckJson<'a> {
                 conservative: conflict.is_some_and(|conflict| conflict.conservative),
                 seconds: judged.map_or(0.0, |judged| judged.seconds),
             },
+            team: judged
+                .and_then(|judged| judged.team.as_ref())
+                .map(|team| TeamJson::new(team, input, reporter)),
             diagnostics: input.diagnostics.iter().map(|d| reporter.to_json(d)).collect(),
             conflict: match (conflict, network) {
                 (Some(conflict), Some(network)) => members(conflict, network, input, reporter),

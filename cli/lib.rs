@@ -48,13 +48,14 @@
 //! `examples/stepped.rs` is the same with a loop that jumps from decision to decision, news that is asked for, and the
 //! record of what happened: `cargo run --example stepped`.
 //!
-//! The crates have a tour each: [`compiler`] (the language), [`network`] (networks, controllability, formats) and [`runtime`]
-//! (executions without a clock; the clock, drivers and news over HTTP are in the `kirk` command). A library needs none of the
+//! The crates have a tour each: [`compiler`] (the language), [`network`] (networks, controllability, formats), [`runtime`]
+//! and [`team`] (executions without a clock, by one and by several; the clock, drivers and news over HTTP are in the `kirk` command). A library needs none of the
 //! command: depend on kirk with `default-features = false`.
 
 pub use kirk_compiler as compiler;
 pub use kirk_network as network;
 pub use kirk_runtime as runtime;
+pub use kirk_team as team;
 
 pub use kirk_compiler::{Compilation, Diagnostic, Explain, Options, Source, compile};
 pub use kirk_network::{Conflict, Duration, EventId, Network, Time, Verdict, check};

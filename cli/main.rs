@@ -29,6 +29,7 @@ mod report;
 mod run;
 mod sarif;
 mod slack;
+mod team;
 mod timetable;
 mod verify;
 mod watch;

@@ -285,6 +285,7 @@ fn mission(
     common: &Common,
 ) -> io::Result<Result<(String, kirk_runtime::Plan), Status>> {
     let mut input = load_begun(files, first, selection);
+    input.for_one_alone("`kirk query`");
     let plan = plan_of(&mut input);
     // Notes on the mission are no answer.
     let quiet = Common { quiet: true, ..common.clone() };

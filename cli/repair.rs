@@ -22,6 +22,7 @@ use crate::report::Reporter;
 
 pub(crate) fn repair_of(arguments: &RepairOf, common: &Common) -> io::Result<Status> {
     let mut input = load_all(&arguments.files, &arguments.selection);
+    input.for_one_alone("`kirk repair`");
     let file = arguments.files.join(" ");
     let wishes = match wishes(arguments, &input) {
         Ok(wishes) => wishes,

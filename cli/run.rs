@@ -22,6 +22,7 @@ use crate::report::Reporter;
 
 pub(crate) fn run(arguments: &Run, common: &Common) -> io::Result<Status> {
     let mut input = load_all(&arguments.files, &arguments.selection);
+    input.for_one_alone("`kirk run`");
     let plan = plan_of(&mut input);
     let reported = |diagnostic: &Diagnostic| match arguments.show.format {
         // Nothing but the execution goes to standard output, and nobody looks at notes beside JSON.

@@ -18,16 +18,17 @@ use crate::args::{Common, SlackOf, TextOrJson};
 use crate::foreign::one_line;
 use crate::input::{Loaded, load_all};
 use crate::json::line;
-use crate::judge::judge;
+use crate::judge::{Judged, judge};
 use crate::output::{Status, print, print_line};
 use crate::report::{Reporter, SpanJson};
 
 pub(crate) fn slack_of(arguments: &SlackOf, common: &Common) -> io::Result<Status> {
     let mut input = load_all(&arguments.files, &arguments.selection);
+    input.for_one_alone("`kirk slack`");
     let judged = judge(&mut input);
     let reporter = Reporter::new(&input.sources);
     let file = arguments.files.join(" ");
-    let is_yes = judged.as_ref().is_some_and(|judged| judged.conflict.is_none());
+    let is_yes = judged.as_ref().is_some_and(Judged::is_yes);
     let left = match (&input.network, is_yes) {
         (Some(network), true) => measure(network, &input).unwrap_or_default(),
         _ => None,

@@ -29,6 +29,8 @@ pub(crate) enum Problem<'a> {
     BadNetwork(String),
     /// An option that chooses a program of a network.
     NoPrograms { option: &'static str, value: &'a str },
+    /// A question about one executive, asked of a team's mission.
+    ForOneAlone { asked: &'a str, team: &'a str, agents: &'a [String] },
     /// A journal that cannot be repeated, for this reason.
     BadJournal(String),
     /// A record in another format.
@@ -88,6 +90,14 @@ impl Problem<'_> {
                 format!("`{option} {value}` chooses among the programs of a source, and this is a network"),
             )
             .help(format!("A network is checked and executed as a whole: leave `{option}` out.")),
+            Problem::ForOneAlone { asked, team, agents } => error(
+                Code::ForOneAlone,
+                format!("{asked} knows one executive that hears everything, and the team `{team}` executes this"),
+            )
+            .help(format!(
+                "`kirk check` judges the team; `kirk compile --agent NAME` prints what one of its agents executes: {}.",
+                agents.join(", ")
+            )),
             Problem::BadJournal(why) => {
                 error(Code::BadRecord, format!("this journal cannot be repeated: {why}"))
             }

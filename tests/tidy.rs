@@ -21,9 +21,9 @@ fn the_crates_know_only_whom_they_may_know() {
     assert_eq!(ours("network/Cargo.toml"), Vec::<String>::new());
     assert_eq!(ours("compiler/Cargo.toml"), ["kirk-network"]);
     assert_eq!(ours("runtime/Cargo.toml"), ["kirk-network"]);
-    assert_eq!(ours("team/Cargo.toml"), ["kirk-network", "kirk-runtime"]);
+    assert_eq!(ours("team/Cargo.toml"), ["kirk-compiler", "kirk-network", "kirk-runtime"]);
     assert_eq!(ours("executive/Cargo.toml"), ["kirk-network", "kirk-runtime"]);
-    assert_eq!(ours("lsp/Cargo.toml"), ["kirk-compiler", "kirk-network"]);
+    assert_eq!(ours("lsp/Cargo.toml"), ["kirk-compiler", "kirk-network", "kirk-team"]);
 }
 
 #[test]

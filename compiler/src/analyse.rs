@@ -8,6 +8,7 @@ mod expression;
 mod names;
 pub(crate) mod problem;
 pub(crate) mod symbols;
+mod team;
 mod unused;
 
 use std::collections::BTreeSet;
@@ -30,7 +31,8 @@ pub(crate) fn analyse(program: &ast::Program, options: &Options, problems: &mut 
     let names = Names::new(program, &mut uses, problems);
     classes::check(program, &names, &mut uses, problems);
     let numbers = named_numbers(program, &names, &mut uses, problems);
-    let mut model = Model::default();
+    let team = team::team(program, &names, &numbers, &mut uses, problems);
+    let mut model = Model { team, ..Model::default() };
     for (index, definition) in program.programs.iter().enumerate() {
         let mut analyser = Analyser {
             names: &names,
@@ -103,6 +105,7 @@ impl Analyser<'_> {
         Program {
             name: definition.name.clone(),
             parameters: definition.parameters.clone(),
+            agent: definition.agent.as_ref().and_then(|agent| self.resolver().agent(agent)),
             work,
             requires: definition.requires.clone(),
             effect: definition.effect.clone(),

@@ -1,8 +1,11 @@
 //! The program as written: names are not resolved yet. Serialised for `--emit ast`, without the places.
 
+mod serialize;
+
+pub(crate) use serialize::seconds;
+
 use kirk_network::Duration;
-use serde::ser::SerializeSeq;
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use crate::calculate::Operator;
 use crate::source::Span;
@@ -16,6 +19,9 @@ pub struct Program {
     pub parameters: Vec<NamedNumber>,
     /// The classes of agents and objects.
     pub classes: Vec<Class>,
+    /// The team, once for each time that one is defined.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub teams: Vec<Team>,
     /// The control programs.
     pub programs: Vec<ControlProgram>,
 }
@@ -123,6 +129,40 @@ pub enum Type {
     Anything,
 }
 
+/// `(define-team ...)`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Team {
+    /// The package it belongs to.
+    pub home: String,
+    /// Its name.
+    pub name: Ident,
+    /// Who belongs to it.
+    pub agents: Vec<Ident>,
+    /// How news travels between them.
+    pub links: Vec<Link>,
+    /// The whole definition.
+    #[serde(skip)]
+    pub span: Span,
+}
+
+/// `(link a b :min-delay 5 :max-delay 15)`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Link {
+    /// One agent.
+    pub from: Ident,
+    /// The other.
+    pub to: Ident,
+    /// How long a message takes.
+    pub delay: Bounds,
+    /// True if messages go from the first to the second only.
+    pub one_way: bool,
+    /// True if messages say when they were sent, by clocks that agree.
+    pub stamped: bool,
+    /// The form.
+    #[serde(skip)]
+    pub span: Span,
+}
+
 /// `(define-control-program ...)`.
 #[derive(Clone, Debug, Serialize)]
 pub struct ControlProgram {
@@ -138,6 +178,9 @@ pub struct ControlProgram {
     pub primitive: bool,
     /// The duration declared.
     pub duration: Option<DurationOf>,
+    /// Who executes it: an agent of the team, or a parameter that stands for one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub agent: Option<Ident>,
     /// What has to hold.
     pub requires: Option<Condition>,
     /// What it brings about.
@@ -164,6 +207,9 @@ pub struct DurationOf {
     pub contingent_nil: Option<Span>,
     /// How early and late the news of the end may be, if anything is said about it.
     pub delay: Option<Bounds>,
+    /// The agent that hears of the end first, if that is another one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub observed_by: Option<Ident>,
     /// The declaration.
     #[serde(skip)]
     pub span: Span,
@@ -178,6 +224,8 @@ pub enum Limits {
     ObservationDelay,
     /// A `delay`.
     Wait,
+    /// How long a message between agents takes.
+    Message,
 }
 
 /// What a number is for.
@@ -254,6 +302,8 @@ pub enum Body {
     Label(Labelled),
     /// `(between ...)`.
     Between(Box<Between>),
+    /// `(with-agent ...)`.
+    WithAgent(WithAgent),
 }
 
 /// `(name arg...)`.
@@ -334,6 +384,18 @@ pub struct Labelled {
     /// The operator.
     #[serde(skip)]
     pub operator: Span,
+    /// The form.
+    #[serde(skip)]
+    pub span: Span,
+}
+
+/// `(with-agent robot body...)`.
+#[derive(Clone, Debug, Serialize)]
+pub struct WithAgent {
+    /// Who executes what is in it and names nobody else.
+    pub agent: Ident,
+    /// The body.
+    pub body: Vec<Body>,
     /// The form.
     #[serde(skip)]
     pub span: Span,
@@ -491,6 +553,7 @@ impl Body {
             Body::Dotimes(dotimes) => dotimes.span,
             Body::Label(labelled) => labelled.span,
             Body::Between(between) => between.span,
+            Body::WithAgent(with) => with.span,
         }
     }
 
@@ -502,6 +565,7 @@ impl Body {
             Body::Let(binding) => &binding.body,
             Body::Dotimes(dotimes) => &dotimes.body,
             Body::Label(labelled) => &labelled.body,
+            Body::WithAgent(with) => &with.body,
             Body::Call(_) | Body::Delay(_) | Body::Between(_) => &[],
         }
     }
@@ -517,68 +581,9 @@ impl Ident {
     }
 }
 
-impl Serialize for Import {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(&format_args!("{}:{}", self.from.name, self.name.name))
-    }
-}
-
-impl Serialize for Ident {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match &self.package {
-            Some(package) => serializer.collect_str(&format_args!("{package}:{}", self.name)),
-            None => serializer.serialize_str(&self.name),
-        }
-    }
-}
-
 impl AmountKind {
     /// True if it could not be read, which has been reported.
     pub fn is_error(&self) -> bool {
         matches!(self, AmountKind::Error)
-    }
-}
-
-impl Serialize for Amount {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match &self.kind {
-            AmountKind::Number(duration) => seconds(duration, serializer),
-            AmountKind::Infinite => serializer.serialize_str(":infinity"),
-            AmountKind::Named(name) => name.serialize(serializer),
-            AmountKind::Unit(name, _, amount) => (name, amount).serialize(serializer),
-            AmountKind::Calculation(operator, amounts) => {
-                let mut list = serializer.serialize_seq(Some(amounts.len() + 1))?;
-                list.serialize_element(operator)?;
-                for amount in amounts {
-                    list.serialize_element(amount)?;
-                }
-                list.end()
-            }
-            AmountKind::Error => serializer.serialize_str("?"),
-        }
-    }
-}
-
-impl Serialize for ValueKind {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match self {
-            ValueKind::Number(number) => seconds(number, serializer),
-            ValueKind::Text(text) => serializer.collect_str(&format_args!("\"{text}\"")),
-            ValueKind::True => serializer.serialize_str("t"),
-            ValueKind::Nil => serializer.serialize_str("nil"),
-            ValueKind::Symbol(name) => serializer.collect_str(&format_args!("'{name}")),
-            ValueKind::Name(Some(package), name) => serializer.collect_str(&format_args!("{package}:{name}")),
-            ValueKind::Name(None, name) | ValueKind::Other(name) => serializer.serialize_str(name),
-        }
-    }
-}
-
-/// Seconds as a number: whole ones without a fraction. Exact below 2^53 microseconds, as JSON readers are.
-pub(crate) fn seconds<S: Serializer>(duration: &Duration, serializer: S) -> Result<S::Ok, S::Error> {
-    let micros = duration.as_micros();
-    if micros % 1_000_000 == 0 {
-        serializer.serialize_i64(micros / 1_000_000)
-    } else {
-        serializer.serialize_f64(micros as f64 / 1e6)
     }
 }

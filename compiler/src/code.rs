@@ -86,6 +86,10 @@ codes! {
     UnknownLabel = 312, "a label that is not there", names::UNKNOWN_LABEL;
     AmbiguousLabel = 313, "a label or a name that means several occurrences", names::AMBIGUOUS_LABEL;
     ReservedName = 314, "a name that has a meaning of its own", names::RESERVED_NAME;
+    UnknownAgent = 315, "an agent that is not in the team", names::UNKNOWN_AGENT;
+    NobodyExecutes = 316, "an activity of a team that is nobody's", names::NOBODY_EXECUTES;
+    NotTheSameMoment = 317, "one moment for two agents who cannot both know it", names::NOT_THE_SAME_MOMENT;
+    Unreachable = 318, "two agents of whom neither hears of the other", names::UNREACHABLE;
     NotANumber = 401, "a bound that is not a number", bounds::NOT_A_NUMBER;
     Negative = 402, "a negative bound", bounds::NEGATIVE;
     LowerAboveUpper = 403, "the lower bound is above the upper bound", bounds::LOWER_ABOVE_UPPER;
@@ -112,10 +116,12 @@ codes! {
     UnknownType = 508, "not a type kirk knows", worlds::UNKNOWN_TYPE;
     CircularClass = 509, "a class that extends itself", worlds::CIRCULAR_CLASS;
     NotControllable = 601, "the program cannot be executed in every case", worlds::NOT_CONTROLLABLE;
+    NoPromises = 602, "no promises were found with which a team is sure to succeed", worlds::NO_PROMISES;
     CannotRead = 701, "a file that cannot be read", files::CANNOT_READ;
     BadNetwork = 702, "not a network kirk can read", files::BAD_NETWORK;
     NumbersTooLarge = 703, "durations that add up to too much", files::NUMBERS_TOO_LARGE;
     NoPrograms = 704, "an option that chooses a program, given with a network", files::NO_PROGRAMS;
+    ForOneAlone = 705, "a question about one executive, asked of a team's mission", files::FOR_ONE_ALONE;
     BadObservation = 801, "not an observation of this mission", files::BAD_OBSERVATION;
     ImpossibleObservation = 802, "news that the model rules out", files::IMPOSSIBLE_OBSERVATION;
     BadRecord = 803, "not the record of an execution", files::BAD_RECORD;

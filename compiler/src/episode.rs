@@ -37,6 +37,12 @@ pub struct Episode {
     /// How early and late the news of its end may be.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub delay: Option<Range>,
+    /// Who executes it: an agent of the team. What joins several is nobody's.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub agent: Option<String>,
+    /// Who hears of its end first, if that is another agent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub observed_by: Option<String>,
     /// What has to hold.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub requires: Option<Box<Condition>>,

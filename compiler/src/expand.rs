@@ -1,5 +1,6 @@
 //! Unfolds the program to start from: every call becomes an episode of its own, with a name of its own.
 
+mod agents;
 mod interval;
 mod labels;
 mod limits;
@@ -43,8 +44,9 @@ pub(crate) fn expand(model: &Model, problems: &mut Problems) -> Option<Episode> 
         exhausted: false,
         problems,
     };
-    let mut root = expander.occurrence(entry, arguments, program.name.span, None);
+    let mut root = expander.occurrence(entry, arguments, program.name.span, Around::default());
     labels::give_names(&mut root, &expander.scopes);
+    agents::settle(&mut root);
     expander.constrain(&mut root);
     Some(root)
 }
@@ -71,6 +73,15 @@ struct Frame<'a> {
     scope: usize,
     /// The values of the parameters, and of the names of `let` and `dotimes` around the place at hand.
     variables: Vec<Value>,
+    /// Who executes what names nobody else.
+    agent: Option<String>,
+}
+
+/// Where an occurrence of a program is: nowhere, if it is the one to start from.
+#[derive(Default)]
+struct Around {
+    scope: Option<usize>,
+    agent: Option<String>,
 }
 
 /// A `between` whose events are looked up when all episodes are known.
@@ -83,13 +94,7 @@ struct Pending<'a> {
 
 impl<'a> Expander<'a> {
     #[inline(never)]
-    fn occurrence(
-        &mut self,
-        index: usize,
-        arguments: Vec<Value>,
-        span: Span,
-        outside: Option<usize>,
-    ) -> Episode {
+    fn occurrence(&mut self, index: usize, arguments: Vec<Value>, span: Span, outside: Around) -> Episode {
         let program = &self.model.programs[index];
         let name = self.occurrences.of(&program.name.name);
         let mut episode = self.blank(name.clone(), Kind::Program, span);
@@ -97,19 +102,24 @@ impl<'a> Expander<'a> {
         episode.effect = program.effect.as_ref().map(|c| Box::new(substitute(c, program, &arguments)));
         episode.arguments = arguments.iter().map(|value| value.kind.clone()).collect();
         // The program started from occurs too, outside of everything.
-        let around = outside.unwrap_or_else(|| self.scopes.open(None));
+        let around = outside.scope.unwrap_or_else(|| self.scopes.open(None));
         let target = Target::Program(index);
         let given = episode.arguments.clone();
         let named = Named { scope: around, target, arguments: given, episode: episode.name.clone(), span };
         self.scopes.add(named, self.problems);
         let scope = self.scopes.open(Some(around));
-        let mut frame = Frame { name: &name, program, call: span, internal: 0, scope, variables: arguments };
+        let (call, variables, agent) = (span, arguments, outside.agent);
+        let mut frame = Frame { name: &name, program, call, internal: 0, scope, variables, agent };
+        if let Some(agent) = &program.agent {
+            frame.agent = self.agent(agent, &frame);
+        }
+        episode.agent = frame.agent.clone();
         match &program.work {
             Work::Primitive(timing) => self.primitive(&mut episode, timing, &frame),
             Work::Body(body) => episode.parts = self.parts(body, &mut frame),
         }
         self.scopes.close(scope);
-        if outside.is_none() {
+        if outside.scope.is_none() {
             self.scopes.close(around);
         }
         episode
@@ -119,6 +129,11 @@ impl<'a> Expander<'a> {
         episode.kind = Kind::Primitive;
         episode.duration = Some(self.interval(&timing.bounds, frame, Limits::Duration));
         episode.contingent = timing.contingent;
+        episode.observed_by = timing.observed_by.as_ref().and_then(|agent| self.agent(agent, frame));
+        if self.model.team.is_some() && episode.agent.is_none() && frame.program.agent.is_none() {
+            let program = frame.program.name.clone();
+            self.problems.push(Problem::NobodyExecutes { program, call: frame.call });
+        }
         if timing.contingent {
             if episode.duration.as_ref().is_some_and(|duration| duration.upper == Bound::Infinite) {
                 self.problems.push(Problem::ContingentUnbounded {
@@ -149,7 +164,8 @@ impl<'a> Expander<'a> {
             match form {
                 Body::Call { program, arguments, span } => {
                     let arguments = self.values(arguments, frame);
-                    parts.push(self.occurrence(*program, arguments, *span, Some(frame.scope)));
+                    let outside = Around { scope: Some(frame.scope), agent: frame.agent.clone() };
+                    parts.push(self.occurrence(*program, arguments, *span, outside));
                 }
                 Body::Group { .. } | Body::Within { .. } | Body::Delay { .. } => {
                     parts.push(self.form(form, frame));
@@ -164,6 +180,7 @@ impl<'a> Expander<'a> {
                     parts.push(self.label(name, arguments, body, *operator, frame));
                 }
                 Body::Between(between) => self.between(between, frame),
+                Body::WithAgent { agent, body } => self.with_agent(agent, body, frame, parts),
             }
         }
     }
@@ -207,6 +224,20 @@ impl<'a> Expander<'a> {
         frame.variables.extend(values);
         self.unfold(body, frame, parts);
         frame.variables.truncate(outside);
+    }
+
+    #[inline(never)]
+    fn with_agent(
+        &mut self,
+        agent: &Expression,
+        body: &'a [Body],
+        frame: &mut Frame<'_>,
+        parts: &mut Vec<Episode>,
+    ) {
+        let agent = self.agent(agent, frame);
+        let outside = std::mem::replace(&mut frame.agent, agent);
+        self.unfold(body, frame, parts);
+        frame.agent = outside;
     }
 
     #[inline(never)]
@@ -311,6 +342,8 @@ fn blank(name: String, kind: Kind, span: Span) -> Episode {
         duration: None,
         contingent: false,
         delay: None,
+        agent: None,
+        observed_by: None,
         requires: None,
         effect: None,
         labels: Vec::new(),

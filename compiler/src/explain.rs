@@ -57,7 +57,7 @@ pub struct Told {
 impl<'a> Explain<'a> {
     /// Of a program that was compiled from these sources.
     pub fn of(lowered: &'a Lowered, sources: &'a [Source]) -> Explain<'a> {
-        let Lowered { network, origins, entry } = lowered;
+        let Lowered { network, origins, entry, .. } = lowered;
         Explain { network, origins, sources, program: Some(*entry), theory: false }
     }
 

@@ -7,6 +7,8 @@ use kirk_network::{Bound, ContingentLink, Delay, Duration, Event, EventId, Name,
 use crate::episode::{Constraint, Episode, EventOf, Kind, Range};
 use crate::origins::{Origin, OriginKind, Origins, Point, Statement, Subject};
 use crate::source::Span;
+use crate::team::{Team, team};
+use crate::typed;
 
 /// What a program is compiled to.
 #[derive(Clone, Debug)]
@@ -17,10 +19,12 @@ pub struct Lowered {
     pub origins: Origins,
     /// The name of the program to start from, where it is defined.
     pub entry: Span,
+    /// Who executes it, if it is not one alone.
+    pub team: Option<Team>,
 }
 
 /// Builds the network. `None` only if the tree is not what `expand` makes.
-pub(crate) fn lower(root: &Episode) -> Option<Lowered> {
+pub(crate) fn lower(root: &Episode, written: Option<&typed::Team>) -> Option<Lowered> {
     let mut lowering = Lowering {
         events: Vec::new(),
         requirements: Vec::new(),
@@ -31,7 +35,8 @@ pub(crate) fn lower(root: &Episode) -> Option<Lowered> {
     lowering.constraints(root);
     let Lowering { events, requirements, contingents, origins } = lowering;
     let network = Network::new(root.name.clone(), EventId(0), events, requirements, contingents).ok()?;
-    Some(Lowered { network, origins, entry: root.span })
+    let team = written.map(|written| team(written, root));
+    Some(Lowered { network, origins, entry: root.span, team })
 }
 
 struct Lowering {

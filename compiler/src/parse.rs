@@ -14,6 +14,7 @@ pub(crate) mod package;
 pub(crate) mod problem;
 mod program;
 mod slips;
+mod team;
 
 pub(crate) use slips::amount::suffixed;
 pub(crate) use slips::elsewhere::{Cure, Instead, instead_of_operator};
@@ -47,6 +48,7 @@ pub(crate) fn parse(forms: &[Form], program: &mut Program, problems: &mut Proble
             "defparameter" | "defconstant" => {
                 program.parameters.extend(named_number(form, rest, &home, problems));
             }
+            "define-team" => program.teams.extend(team::team(form, rest, &home, problems)),
             "defpackage" => program.packages.extend(package::package(form, rest, problems)),
             "in-package" => {
                 if let Some(entered) = package::entered(form, rest, &program.packages, problems) {

@@ -13,6 +13,36 @@ pub struct Model {
     pub programs: Vec<Program>,
     /// The program to start from.
     pub entry: Option<usize>,
+    /// Who executes it together, if it is not one alone.
+    pub team: Option<Team>,
+}
+
+/// A team.
+#[derive(Clone, Debug)]
+pub struct Team {
+    /// Its name.
+    pub name: Ident,
+    /// Who belongs to it.
+    pub agents: Vec<Ident>,
+    /// How news travels between them.
+    pub links: Vec<Link>,
+}
+
+/// A link between two agents.
+#[derive(Clone, Debug)]
+pub struct Link {
+    /// One agent, by its position in the team.
+    pub from: usize,
+    /// The other.
+    pub to: usize,
+    /// How long a message takes.
+    pub delay: Bounds,
+    /// True if messages go from the first to the second only.
+    pub one_way: bool,
+    /// True if messages say when what they tell of happened.
+    pub stamped: bool,
+    /// The form.
+    pub span: Span,
 }
 
 /// A control program.
@@ -22,6 +52,8 @@ pub struct Program {
     pub name: Ident,
     /// Its parameters.
     pub parameters: Vec<Ident>,
+    /// Who executes it, if that is said.
+    pub agent: Option<Expression>,
     /// What it does.
     pub work: Work,
     /// What has to hold.
@@ -48,6 +80,8 @@ pub struct Timing {
     pub contingent: bool,
     /// How early and late the news of the end may be.
     pub delay: Bounds,
+    /// Who hears of the end first, if it is not who executes it.
+    pub observed_by: Option<Expression>,
 }
 
 /// An interval of durations, with places for messages.
@@ -175,6 +209,13 @@ pub enum Body {
     },
     /// A constraint between two events.
     Between(Box<Between>),
+    /// The body, executed by this agent.
+    WithAgent {
+        /// Who.
+        agent: Expression,
+        /// The body.
+        body: Vec<Body>,
+    },
 }
 
 /// What `between` says.
@@ -226,7 +267,7 @@ impl Body {
     pub fn is_episode(&self) -> bool {
         match self {
             Body::Call { .. } | Body::Group { .. } | Body::Within { .. } | Body::Delay { .. } => true,
-            Body::Let { .. } | Body::Repeat { .. } | Body::Between(_) => false,
+            Body::Let { .. } | Body::Repeat { .. } | Body::WithAgent { .. } | Body::Between(_) => false,
             Body::Label { body, .. } => body.len() != 1,
         }
     }
@@ -238,6 +279,7 @@ impl Body {
             | Body::Within { body, .. }
             | Body::Let { body, .. }
             | Body::Repeat { body, .. }
+            | Body::WithAgent { body, .. }
             | Body::Label { body, .. } => body,
             Body::Call { .. } | Body::Delay { .. } | Body::Between(_) => &[],
         }

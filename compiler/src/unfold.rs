@@ -5,6 +5,7 @@ use crate::expand::expand;
 use crate::lower::{Lowered, lower};
 use crate::notes::notes;
 use crate::problem::Problems;
+use crate::team::faults;
 use crate::typed::Model;
 
 /// A program unfolded.
@@ -24,9 +25,12 @@ pub fn unfold(model: &Model, problems: &mut Problems) -> Option<Unfolded> {
     if problems.errors() > before {
         return Some(Unfolded { episodes, lowered: None });
     }
-    let lowered = lower(&episodes);
+    let lowered = lower(&episodes, model.team.as_ref());
     if let Some(lowered) = &lowered {
+        if let Some(team) = &lowered.team {
+            problems.extend(faults(team, &lowered.network, &lowered.origins));
+        }
         problems.extend(notes(lowered, &episodes));
     }
-    Some(Unfolded { episodes, lowered })
+    Some(Unfolded { episodes, lowered: lowered.filter(|_| problems.errors() == before) })
 }

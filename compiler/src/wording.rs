@@ -10,6 +10,7 @@ mod origins;
 mod parse;
 mod read;
 pub(crate) mod repair;
+mod team;
 
 use crate::ast::{Limits, Role};
 use crate::code::Code;
@@ -31,6 +32,7 @@ impl Limits {
             Limits::Duration => ["the lower bound", "the upper bound"],
             Limits::ObservationDelay => ["the shortest observation delay", "the longest observation delay"],
             Limits::Wait => ["the shortest wait", "the longest wait"],
+            Limits::Message => ["the shortest delay of a message", "the longest delay of a message"],
         }
     }
 }

@@ -35,6 +35,8 @@ pub enum Position {
     Declare,
     /// In a `declare`.
     Declaration,
+    /// In a `define-team`.
+    Team,
     /// In the body of a program or of a form.
     Body,
     /// Where a duration is declared: `simple`.
@@ -70,6 +72,8 @@ pub enum Piece {
     Occurrence,
     /// A class.
     Class,
+    /// An agent of the team.
+    Agent,
     /// Keywords with their values.
     Keywords,
     /// A list of keywords with their values, which may be left out.
@@ -105,8 +109,15 @@ pub enum Layout {
 }
 
 /// The words that begin a top-level form, as messages list them.
-pub const DEFINITIONS: [&str; 6] =
-    ["define-control-program", "defpackage", "in-package", "defclass", "defparameter", "defconstant"];
+pub const DEFINITIONS: [&str; 7] = [
+    "define-control-program",
+    "define-team",
+    "defpackage",
+    "in-package",
+    "defclass",
+    "defparameter",
+    "defconstant",
+];
 
 /// The units of time, in microseconds.
 pub const UNITS: [(&str, i64); 5] = [

@@ -87,6 +87,35 @@ fn label_names_are_names_of_events() {
 }
 
 #[test]
+fn every_activity_of_a_team_has_an_agent_and_what_joins_several_is_nobodys() {
+    let text = "(define-team crew (agent rover) (agent base) (link rover base :min-delay 1 :max-delay 2))
+(define-control-program dig () (declare (primitive) (agent rover)))
+(define-control-program look (who)
+  (declare (primitive) (agent who)
+    (duration (simple :lower-bound 1 :upper-bound 2) :contingent t :observed-by rover)))
+(define-control-program pack () (declare (primitive)))
+(define-control-program main ()
+  (sequence (:slack t)
+    (sequence () (dig) (delay 5))
+    (with-agent base (sequence (:slack t) (pack) (dig)))
+    (look base)))";
+    let lowered = common::compile(text).lowered.expect("a network");
+    let (network, team) = (lowered.network, lowered.team.expect("a team"));
+    let owner = |name: &str| {
+        let event = network.find(name).expect("an event");
+        team.owners[event.index()].map(|agent| team.agents[agent as usize].as_str())
+    };
+    let rovers = ["dig:start", "dig:end", "main.2:start", "main.3:start", "dig#2:end", "look:end"];
+    assert!(rovers.iter().all(|event| owner(event) == Some("rover")), "{:?}", rovers.map(owner));
+    let bases = ["pack:start", "pack:end", "look:start"];
+    assert!(bases.iter().all(|event| owner(event) == Some("base")), "{:?}", bases.map(owner));
+    // Also where it was given to somebody.
+    assert_eq!(["main:end", "main.1:start", "main.4:start", "main.4:end"].map(owner), [None; 4]);
+    let second = kirk_network::Duration::from_secs;
+    assert_eq!((team.links[0].delay.min, team.links[0].delay.max.finite()), (second(1), Some(second(2))));
+}
+
+#[test]
 fn between_takes_the_program_started_from_and_numbered_occurrences() {
     let text = "(define-control-program a () (declare (primitive)))
 (define-control-program main ()

@@ -41,9 +41,11 @@ fn every_word_is_one_where_the_table_says_that_it_stands() {
             Position::Declaration => format!("(define-control-program main () (declare {form}))"),
             Position::Number => format!("(define-control-program main () (delay {form}))"),
             // What else stands in these places is told as something else.
-            Position::Duration | Position::Constraint | Position::Event | Position::Condition => {
-                String::new()
-            }
+            Position::Team
+            | Position::Duration
+            | Position::Constraint
+            | Position::Event
+            | Position::Condition => String::new(),
         };
         assert!(!is_unknown(&around(&format!("({name} 1 1)"))), "{name}");
         let other = around(&format!("({name}-other 1 1)"));
@@ -75,6 +77,7 @@ fn every_keyword_is_one_of_its_form() {
             "simple-temporal" => format!(
                 "(define-control-program main () (with-temporal-constraint (simple-temporal :{keyword} 5) (delay 5)))"
             ),
+            "link" => format!("(define-team crew (agent a) (agent b) (link a b :{keyword} 5))"),
             name => panic!("say here how the keywords of `{name}` are written"),
         });
     }

@@ -27,7 +27,7 @@
   :type 'string)
 
 (defconst rmpl--bodies
-  '(define-control-program defparameter defconstant defclass defpackage declare sequence parallel with-temporal-constraint dotimes let let* label between duration)
+  '(define-control-program define-team defparameter defconstant defclass defpackage declare sequence parallel with-temporal-constraint dotimes let let* label between with-agent duration)
   "What has a body, which stands two columns in.")
 
 (defun rmpl--operator (open)
@@ -69,14 +69,14 @@ STATE is that of the parser there, as `lisp-indent-function' has it."
                         (regexp-opt words t) "\\_>"))))
     `((,(concat (funcall word "define-control-program") "[ \t]+\\(\\(?:\\sw\\|\\s_\\)+\\)?")
        (1 font-lock-keyword-face) (2 font-lock-function-name-face nil t))
-      (,(concat (funcall word "defclass") "[ \t]+\\(\\(?:\\sw\\|\\s_\\)+\\)?")
+      (,(concat (funcall word "defclass" "define-team") "[ \t]+\\(\\(?:\\sw\\|\\s_\\)+\\)?")
        (1 font-lock-keyword-face) (2 font-lock-type-face nil t))
       (,(concat (funcall word "defparameter" "defconstant") "[ \t]+\\(\\(?:\\sw\\|\\s_\\)+\\)?")
        (1 font-lock-keyword-face) (2 font-lock-variable-name-face nil t))
       (,(funcall word "defpackage" "in-package") (1 font-lock-keyword-face))
-      (,(funcall word "sequence" "parallel" "with-temporal-constraint" "delay" "dotimes" "let" "let*" "label" "between")
+      (,(funcall word "sequence" "parallel" "with-temporal-constraint" "delay" "dotimes" "let" "let*" "label" "between" "with-agent")
        (1 font-lock-keyword-face))
-      (,(funcall word "declare" "primitive" "duration" "requires" "effect" "ignore" "ignorable")
+      (,(funcall word "declare" "agent" "link" "primitive" "duration" "requires" "effect" "ignore" "ignorable")
        (1 font-lock-preprocessor-face))
       (,(funcall word "simple" "simple-temporal") (1 font-lock-type-face))
       (,(funcall word "microseconds" "seconds" "minutes" "hours" "days"

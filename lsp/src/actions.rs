@@ -84,7 +84,7 @@ fn repairs(analysis: &Analysis, mission: &Judged) -> Vec<Fix> {
     let is_proven = |fix: &Fix| {
         let is_here = !fix.1.is_empty() && fix.1.iter().all(|(span, _)| analysis.is_here(*span));
         let after = is_here.then(|| tried(analysis, mission, fix)).flatten();
-        after.is_some_and(|after| after.verdict == Judgement::Controllable)
+        after.is_some_and(|after| after.verdict.is_yes())
     };
     found.into_iter().flat_map(|found| found.proposals).map(fix).filter(is_proven).collect()
 }

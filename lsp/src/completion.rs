@@ -136,6 +136,9 @@ impl Offer<'_> {
             Piece::Class => self.symbols(|kind| {
                 matches!(kind, SymbolKind::Class(_)).then_some((CompletionKind::Class, "a class"))
             }),
+            Piece::Agent => self.symbols(|kind| {
+                (kind == SymbolKind::Agent).then_some((CompletionKind::Class, "an agent of the team"))
+            }),
             Piece::Keywords | Piece::Options | Piece::Clause => self.keywords(),
             Piece::Name | Piece::List => {}
         }

@@ -155,6 +155,8 @@ fn symbol_kind(kind: OutlineKind) -> SymbolKind {
         OutlineKind::Program => SymbolKind::FUNCTION,
         OutlineKind::Number => SymbolKind::CONSTANT,
         OutlineKind::Class => SymbolKind::CLASS,
+        OutlineKind::Team => SymbolKind::INTERFACE,
+        OutlineKind::Agent => SymbolKind::OBJECT,
         OutlineKind::Slot => SymbolKind::FIELD,
         OutlineKind::Package => SymbolKind::NAMESPACE,
     }

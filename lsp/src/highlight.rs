@@ -99,6 +99,7 @@ fn kind_of(symbol: SymbolKind) -> HighlightKind {
         SymbolKind::Class(_) => HighlightKind::Class,
         SymbolKind::Slot(_) | SymbolKind::Accessor => HighlightKind::Property,
         SymbolKind::Package => HighlightKind::Namespace,
+        SymbolKind::Team | SymbolKind::Agent => HighlightKind::Class,
     }
 }
 

@@ -114,7 +114,8 @@ fn verdict(mission: &Judged) -> String {
     match &mission.verdict {
         Judgement::Uncontrollable => "not controllable: some bounds do not go together".to_string(),
         Judgement::TooLarge => "no verdict: the durations add up to too much".to_string(),
-        Judgement::Controllable => {
+        Judgement::NoPromises => "not found possible: no promises make its team sure of it".to_string(),
+        Judgement::Controllable | Judgement::Promised(_) => {
             let end = mission.occurrences.first().and_then(|root| mission.window(root.end));
             let takes = match end {
                 Some(Window { earliest, latest: Some(latest) }) if earliest == latest => {
@@ -128,7 +129,14 @@ fn verdict(mission: &Judged) -> String {
             };
             let uncertain = network.contingents().len();
             let links = if uncertain == 1 { "contingent duration" } else { "contingent durations" };
-            format!("controllable: whatever happens{takes}, {uncertain} {links}")
+            let by_team = match &mission.verdict {
+                Judgement::Promised(promises) => {
+                    let are = if promises.len() == 1 { "promise" } else { "promises" };
+                    format!(" by its team, with {} {are}", promises.len())
+                }
+                _ => String::new(),
+            };
+            format!("controllable{by_team}: whatever happens{takes}, {uncertain} {links}")
         }
     }
 }

@@ -9,7 +9,7 @@ use kirk_network::windows::Window;
 
 use crate::analysis::Analysis;
 use crate::cursor::{Cursor, pointed_at};
-use crate::judged::{Judged, Occurrence};
+use crate::judged::{Judged, Judgement, Occurrence};
 use crate::left;
 use crate::view::View;
 use crate::waits::{Waits, in_words, waits};
@@ -37,11 +37,22 @@ pub fn hover(view: &View, offset: u32) -> Option<Hover> {
         SymbolKind::Label => {
             parts.extend(labelled(analysis, symbol).and_then(|form| occurrences(view, form)))
         }
+        SymbolKind::Team => parts.extend(promises(view)),
         _ => {}
     }
     parts.extend(bounds(view, place.span));
     parts.retain(|part| !part.is_empty());
     Some(Hover { span: place.span, markdown: parts.join("\n\n") })
+}
+
+/// What the agents promise each other in each mission.
+fn promises(view: &View) -> Option<String> {
+    let promised = view.missions.iter().filter_map(|mission| match &mission.verdict {
+        Judgement::Promised(promises) => Some(promises),
+        _ => None,
+    });
+    let lines: Vec<String> = promised.flatten().map(|promise| format!("- {promise}")).collect();
+    (!lines.is_empty()).then(|| lines.join("\n"))
 }
 
 /// What there is to know about a word of the language, or an amount.
@@ -101,6 +112,8 @@ fn what(analysis: &Analysis, symbol: &Symbol) -> String {
         }
         SymbolKind::Accessor => format!("`{name}`: reads a slot"),
         SymbolKind::Package => format!("`{name}`: a package"),
+        SymbolKind::Team => format!("`{name}`: the team that executes the mission"),
+        SymbolKind::Agent => format!("`{name}`: an agent of the team"),
     }
 }
 
@@ -240,6 +253,10 @@ fn times(mission: &Judged, occurrence: &Occurrence, detailed: bool) -> Option<St
         text.push_str("; Nature decides when it starts");
     }
     if !detailed {
+        return Some(text);
+    }
+    // Of a team each agent waits for other news.
+    if mission.lowered.team.is_some() {
         return Some(text);
     }
     if let Some(left) = left::of_occurrence(mission, occurrence) {

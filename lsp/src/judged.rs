@@ -4,10 +4,13 @@ use std::collections::BTreeMap;
 
 use kirk_compiler::Problems;
 use kirk_compiler::episode::{Episode, Kind};
-use kirk_compiler::{Diagnostic, Explain, Lowered, Source, Span, Unfolded, events_of, too_large, unfold};
+use kirk_compiler::{
+    Diagnostic, Explain, Lowered, Source, Span, Team, Unfolded, events_of, too_large, unfold,
+};
 use kirk_network::EventId;
 use kirk_network::stnu::TooLarge;
 use kirk_network::windows::{Window, windows};
+use kirk_team::mission as teams;
 
 use crate::analysis::Unjudged;
 
@@ -48,10 +51,21 @@ pub struct Occurrence {
 pub enum Judgement {
     /// It can be executed whatever happens.
     Controllable,
+    /// Its team can execute it whatever happens, with these promises.
+    Promised(Vec<String>),
+    /// No promises were found with which its team can; the diagnostic says what is missing.
+    NoPromises,
     /// It cannot; the diagnostic says why.
     Uncontrollable,
     /// Its durations add up to too much.
     TooLarge,
+}
+
+impl Judgement {
+    /// True if it can be executed whatever happens.
+    pub fn is_yes(&self) -> bool {
+        matches!(self, Judgement::Controllable | Judgement::Promised(_))
+    }
 }
 
 /// Unfolds and judges every program a mission may start from, and says what there is to say about them.
@@ -77,10 +91,10 @@ pub fn judge(unjudged: Unjudged) -> (Vec<Judged>, Vec<Diagnostic>) {
 }
 
 fn mission(root: &Episode, lowered: Lowered, sources: &[Source]) -> (Judged, Vec<Diagnostic>) {
-    let (verdict, diagnostics) = match Explain::of(&lowered, sources).all() {
-        Ok(told) if told.is_empty() => (Judgement::Controllable, told),
-        Ok(told) => (Judgement::Uncontrollable, told),
-        Err(TooLarge) => (Judgement::TooLarge, vec![too_large(lowered.entry)]),
+    let explain = Explain::of(&lowered, sources);
+    let (verdict, diagnostics) = match &lowered.team {
+        Some(team) => by_team(team, &lowered, &explain),
+        None => alone(lowered.entry, &explain),
     };
     let mut at: BTreeMap<Span, Vec<usize>> = BTreeMap::new();
     let mut occurrences = Vec::new();
@@ -92,6 +106,30 @@ fn mission(root: &Episode, lowered: Lowered, sources: &[Source]) -> (Judged, Vec
     let mission =
         Judged { program: root.name.clone(), name: root.span, lowered, occurrences, at, windows, verdict };
     (mission, diagnostics)
+}
+
+/// The verdict on what one executes alone, and what there is to say about it.
+fn alone(entry: Span, explain: &Explain<'_>) -> (Judgement, Vec<Diagnostic>) {
+    match explain.all() {
+        Ok(told) if told.is_empty() => (Judgement::Controllable, told),
+        Ok(told) => (Judgement::Uncontrollable, told),
+        Err(TooLarge) => (Judgement::TooLarge, vec![too_large(entry)]),
+    }
+}
+
+/// The same of what a team executes.
+fn by_team(team: &Team, lowered: &Lowered, explain: &Explain<'_>) -> (Judgement, Vec<Diagnostic>) {
+    match teams::judge(team, &lowered.network, &lowered.origins, &kirk_team::Options::default()) {
+        Ok(mission) => {
+            let judgement = match &mission.verdict {
+                kirk_team::Verdict::Yes(agreement) => Judgement::Promised(agreement.sentences(&mission.team)),
+                kirk_team::Verdict::No(_) => Judgement::Uncontrollable,
+                kirk_team::Verdict::NotFound(_) => Judgement::NoPromises,
+            };
+            (judgement, mission.diagnostics(explain))
+        }
+        Err(why) => (Judgement::TooLarge, why.diagnostics(lowered.entry)),
+    }
 }
 
 impl Judged {

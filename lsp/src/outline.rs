@@ -36,6 +36,10 @@ pub enum OutlineKind {
     Slot,
     /// A package.
     Package,
+    /// A team.
+    Team,
+    /// An agent of it.
+    Agent,
 }
 
 impl Outline {
@@ -81,6 +85,14 @@ pub fn outline(analysis: &Analysis) -> Vec<Outline> {
             })
             .collect();
         found.push(outline);
+    }
+    for team in program.teams.iter().filter(|it| here(&it.name)) {
+        let agent = |name: &kirk_compiler::ast::Ident| Outline {
+            whole: name.span,
+            ..entry(name, OutlineKind::Agent, String::new())
+        };
+        let children = team.agents.iter().map(agent).collect();
+        found.push(Outline { children, ..entry(&team.name, OutlineKind::Team, String::new()) });
     }
     for program in program.programs.iter().filter(|it| here(&it.name)) {
         let kind = if program.primitive { OutlineKind::Primitive } else { OutlineKind::Program };

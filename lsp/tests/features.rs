@@ -550,3 +550,35 @@ fn a_name_that_something_has_already_is_refused_though_nothing_means_that() {
     let refused = rename(&view(&text).analysis, offset, "b").unwrap_err();
     assert_eq!(refused, "The name `b` is taken: in line 2, it would be defined twice.");
 }
+
+/// A robot that is to drill within so many seconds of a talk, of whose end it hears 5 to 15 s later.
+fn team(within: u32) -> String {
+    format!(
+        "(define-team crew (agent astronaut) (agent robot) (link astronaut robot :min-delay 5 :max-delay 15))
+(define-control-program talk ()
+  (declare (primitive) (agent astronaut) (duration (simple :lower-bound 15 :upper-bound 30) :contingent t)))
+(define-control-program drill () (declare (primitive) (agent robot)))
+(define-control-program main ()
+  (sequence (:slack t) (talk) (drill))
+  (between (end talk) (start drill) (simple-temporal :upper-bound {within})))"
+    )
+}
+
+#[test]
+fn the_verdict_on_a_team_is_that_on_all_of_its_agents() {
+    let said = |text: &str| {
+        let told: Vec<String> = problems(text).iter().map(|it| it.code.to_string()).collect();
+        (lenses(&view(text)).remove(0).title, told)
+    };
+    let yes = "controllable by its team, with 1 promise: whatever happens, takes at least 15 s, 1 contingent duration";
+    assert_eq!(said(&team(15)), (yes.to_string(), vec![]));
+    // One executive that hears everything at once could do it.
+    let (title, told) = said(&team(14));
+    assert_eq!(title, "not found possible: no promises make its team sure of it");
+    assert_eq!(told, ["K0602"]);
+    let hover = hover_at(&marked(&team(15), "cr^ew"));
+    assert!(hover.contains("- astronaut promises to start `talk`"), "{hover}");
+    // What is left is known of one executive only.
+    let hover = hover_at(&marked(&team(15), "(dr^ill))"));
+    assert!(hover.contains("starts from") && !hover.contains("guaranteed"), "{hover}");
+}

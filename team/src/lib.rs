@@ -29,6 +29,7 @@
 //!
 //! | step | module | from | to |
 //! | --- | --- | --- | --- |
+//! | take over | [`mission`] | a compiled mission | a team, and its verdict in the source |
 //! | validate | [`model`] | network, owners, links | [`Team`], or everything that is wrong |
 //! | reach | [`reach`] | links | how late news of one agent reaches another |
 //! | make ready | `whole` | team | one network: joins of one owner made one, joints of nobody composed away |
@@ -50,6 +51,7 @@
 //! - [0, 0] makes events one within one owner only, or with the origin.
 //! - A "yes" rests on a check of every view; the same team gives the same promises.
 
+pub mod mission;
 pub mod model;
 pub mod reach;
 #[doc(hidden)]
@@ -66,8 +68,10 @@ mod verify;
 mod views;
 mod weather;
 mod whole;
+mod wording;
 
 pub use find::{Agreement, Options, Verdict, View, find};
+pub use mission::Mission;
 pub use model::{AgentId, Link, Place, Team, TeamError};
 pub use promise::Promise;
 pub use rules::Rules;

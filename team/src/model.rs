@@ -46,6 +46,7 @@ pub struct Team {
     arcs: Vec<Arc>,
     reach: Reach,
     owner: Vec<Option<AgentId>>,
+    agreed: Vec<(EventId, EventId)>,
 }
 
 impl Team {
@@ -65,9 +66,20 @@ impl Team {
             return Err(errors);
         }
         let reach = Reach::new(agents.len(), &arcs);
-        let team = Team { network, agents, links, arcs, reach, owner };
+        let team = Team { network, agents, links, arcs, reach, owner, agreed: Vec::new() };
         let errors = team.faults_of_requirements();
         if errors.is_empty() { Ok(team) } else { Err(errors) }
+    }
+
+    /// The same team, with the author's wish of what the promise of an event is measured from: pairs of an event and its base.
+    #[must_use]
+    pub fn agreed(mut self, agreed: Vec<(EventId, EventId)>) -> Team {
+        self.agreed = agreed;
+        self
+    }
+
+    pub(crate) fn wishes(&self) -> &[(EventId, EventId)] {
+        &self.agreed
     }
 
     /// The network of the whole team.
@@ -116,7 +128,8 @@ impl Team {
         *links.get_mut(number)? = link;
         let owners: Vec<Option<String>> =
             self.owner.iter().map(|owner| owner.map(|agent| self.name(agent).to_string())).collect();
-        Team::new(self.network.clone(), self.agents.clone(), links, &owners).ok()
+        let team = Team::new(self.network.clone(), self.agents.clone(), links, &owners).ok()?;
+        Some(team.agreed(self.agreed.clone()))
     }
 
     /// When news of an event reaches an agent, after the event: its own delay and the links'. `None` if never.

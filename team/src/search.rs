@@ -231,7 +231,18 @@ impl<'a> Finder<'a> {
 
     /// All promises measured from the origin: agreed dates.
     fn all_from_the_origin(&self) -> Choice {
-        Choice { base: vec![self.whole.origin(); self.whole.owner.len()], keeper: vec![0; self.pairs.len()] }
+        let origin = self.whole.origin();
+        let mut choice =
+            Choice { base: vec![origin; self.whole.owner.len()], keeper: vec![0; self.pairs.len()] };
+        // But for what the author has agreed on.
+        let class = |event: EventId| self.whole.merged.event_of[event.index()];
+        for &(event, base) in self.team.wishes() {
+            let (event, base) = (class(event), class(base));
+            if event != origin && event != base && self.may_be_based(&choice, event, base) {
+                choice.base[event.index()] = base;
+            }
+        }
+        choice
     }
 
     /// Every promise measured from the nearest event it waits for.
@@ -247,6 +258,9 @@ impl<'a> Finder<'a> {
             }
             for event in open {
                 settled[event.index()] = true;
+                if choice.base[event.index()] != self.whole.origin() {
+                    continue;
+                }
                 let bases = self.bases(event, true);
                 let free = bases.into_iter().find(|&base| self.may_be_based(&choice, event, base));
                 choice.base[event.index()] = free.unwrap_or(self.whole.origin());

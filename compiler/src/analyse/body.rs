@@ -28,18 +28,19 @@ impl Analyser<'_> {
             ast::Body::Dotimes(dotimes) => Some(self.dotimes(dotimes)),
             ast::Body::Label(labelled) => Some(self.label(labelled)),
             ast::Body::Between(between) => self.between(between),
+            ast::Body::WithAgent(with) => self.with_agent(with),
         }
     }
 
     #[inline(never)]
     fn within(&mut self, within: &ast::Within) -> Body {
-        let bounds = self.bounds(&within.bounds, Limits::Duration);
+        let bounds = self.resolver().bounds(&within.bounds, Limits::Duration);
         Body::Within { bounds, body: self.bodies(&within.body), operator: within.operator }
     }
 
     #[inline(never)]
     fn wait(&mut self, wait: &ast::Wait) -> Body {
-        let bounds = self.bounds(&wait.bounds, Limits::Wait);
+        let bounds = self.resolver().bounds(&wait.bounds, Limits::Wait);
         Body::Delay { bounds, span: wait.span }
     }
 
@@ -58,6 +59,13 @@ impl Analyser<'_> {
             body: self.bodies(&labelled.body),
             operator: labelled.operator,
         }
+    }
+
+    #[inline(never)]
+    fn with_agent(&mut self, with: &ast::WithAgent) -> Option<Body> {
+        let agent = self.resolver().agent(&with.agent);
+        let body = self.bodies(&with.body);
+        Some(Body::WithAgent { agent: agent?, body })
     }
 
     #[inline(never)]
@@ -114,7 +122,7 @@ impl Analyser<'_> {
 
     #[inline(never)]
     fn between(&mut self, between: &ast::Between) -> Option<Body> {
-        let bounds = self.signed_bounds(&between.bounds, Limits::Duration);
+        let bounds = self.resolver().signed_bounds(&between.bounds, Limits::Duration);
         let from = self.event(&between.from);
         let to = self.event(&between.to);
         Some(Body::Between(Box::new(Between { from: from?, to: to?, bounds })))

@@ -2,6 +2,7 @@
 
 use kirk_network::{Bound, Duration};
 
+use super::expression::Resolver;
 use super::problem::Problem;
 use super::{Analyser, Variable};
 use crate::ast::{self, Ident, Limits, Role};
@@ -18,9 +19,10 @@ impl Analyser<'_> {
             let span = definition.name.span;
             let upper = Amount { value: AmountValue::Known(Bound::Infinite), span };
             let delay = Bounds { lower: nothing(span), upper: nothing(span), span };
-            return Timing { bounds: Bounds { lower: nothing(span), upper, span }, contingent: false, delay };
+            let bounds = Bounds { lower: nothing(span), upper, span };
+            return Timing { bounds, contingent: false, delay, observed_by: None };
         };
-        let bounds = self.bounds(&duration.bounds, Limits::Duration);
+        let bounds = self.resolver().bounds(&duration.bounds, Limits::Duration);
         let program = || definition.name.clone();
         if duration.contingent && bounds.upper.value.is(Bound::Infinite) {
             let upper = duration.bounds.upper.as_ref().map_or(duration.bounds.span, |upper| upper.span);
@@ -38,11 +40,18 @@ impl Analyser<'_> {
                     nil: duration.contingent_nil,
                 });
             }
-            delay = self.delay(written);
+            delay = self.resolver().delay(written, Limits::ObservationDelay);
         }
-        Timing { bounds, contingent: duration.contingent, delay }
+        if let (Some(observer), false) = (&duration.observed_by, duration.contingent) {
+            let observer = observer.span;
+            self.problems.push(Problem::ObserverNotContingent { program: program(), observer });
+        }
+        let observed_by = duration.observed_by.as_ref().and_then(|agent| self.resolver().agent(agent));
+        Timing { bounds, contingent: duration.contingent, delay, observed_by }
     }
+}
 
+impl Resolver<'_> {
     /// Resolves both bounds, which are not negative; a missing lower bound is 0, a missing upper bound none.
     pub(super) fn bounds(&mut self, written: &ast::Bounds, limits: Limits) -> Bounds {
         let bounds = self.signed_bounds(written, limits);
@@ -62,8 +71,8 @@ impl Analyser<'_> {
     /// Resolves both bounds.
     pub(super) fn signed_bounds(&mut self, written: &ast::Bounds, limits: Limits) -> Bounds {
         let (zero, low) = (Bound::Finite(Duration::ZERO), Role::Lower(limits));
-        let lower = self.amount(written.lower.as_ref(), zero, written.span, low);
-        let upper = self.amount(written.upper.as_ref(), Bound::Infinite, written.span, Role::Upper(limits));
+        let lower = self.bound(written.lower.as_ref(), zero, written.span, low);
+        let upper = self.bound(written.upper.as_ref(), Bound::Infinite, written.span, Role::Upper(limits));
         let bounds = Bounds { lower, upper, span: written.span };
         if bounds.lower.value.is(Bound::Infinite) {
             self.wrong(evaluate::Problem::InfiniteLower { role: low, span: bounds.lower.span });
@@ -95,27 +104,27 @@ impl Analyser<'_> {
         if self.scope.iter().any(is_variable) {
             return None;
         }
-        let index = self.names.number(name, &self.definition.home)?;
+        let index = self.names.number(name, self.home)?;
         Some(self.program.parameters[index].name.clone())
     }
 
-    fn delay(&mut self, written: &ast::Bounds) -> Bounds {
-        let mut bounds = self.bounds(written, Limits::ObservationDelay);
+    /// How late news or a message is. Without bounds it is not late at all; if it is, it has to be said how late at the most.
+    pub(super) fn delay(&mut self, written: &ast::Bounds, limits: Limits) -> Bounds {
+        let mut bounds = self.bounds(written, limits);
         if written.upper.is_none() {
             bounds.upper.value = AmountValue::Known(Bound::Finite(Duration::ZERO));
             if !bounds.lower.value.is(Bound::Finite(Duration::ZERO)) {
-                self.problems.push(Problem::NoLongestDelay { delay: written.span });
+                self.problems.push(Problem::NoLongestDelay { limits, delay: written.span });
             }
         }
         bounds
     }
 
-    fn amount(&mut self, written: Option<&ast::Amount>, absent: Bound, around: Span, role: Role) -> Amount {
+    fn bound(&mut self, written: Option<&ast::Amount>, absent: Bound, around: Span, role: Role) -> Amount {
         let Some(written) = written else {
             return Amount { value: AmountValue::Known(absent), span: around };
         };
-        let mut resolver = self.resolver();
-        let expression = resolver.amount(written);
-        Amount { value: resolver.known(&expression, role), span: written.span }
+        let expression = self.amount(written);
+        Amount { value: self.known(&expression, role), span: written.span }
     }
 }

@@ -130,6 +130,9 @@ impl Resolver<'_> {
             self.uses.place(self.scope[index].symbol, ident.span);
             return ExpressionKind::Variable(index, ident.name.clone());
         }
+        if self.names_agent(ident) {
+            return ExpressionKind::Value(ValueKind::Name(None, ident.name.clone()));
+        }
         let Some(index) = self.names.number(ident, self.home) else {
             self.unknown_name(ident);
             return ExpressionKind::Error;

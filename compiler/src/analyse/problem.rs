@@ -1,6 +1,6 @@
 //! What can be wrong with names, declarations and calls.
 
-use crate::ast::{Ident, Value, ValueKind};
+use crate::ast::{Ident, Limits, Value, ValueKind};
 use crate::evaluate;
 use crate::parse::Instead;
 use crate::source::Span;
@@ -26,8 +26,10 @@ pub(crate) enum Problem {
     ContingentUnbounded { program: Ident, upper: Span },
     /// An observation delay of what Nature does not decide, in words or by default.
     DelayNotContingent { program: Ident, delay: Span, duration: Span, bounds: Span, nil: Option<Span> },
-    /// An observation delay without a longest one.
-    NoLongestDelay { delay: Span },
+    /// Somebody is to hear first of an end that Nature does not decide.
+    ObserverNotContingent { program: Ident, observer: Span },
+    /// A delay of news or of a message without a longest one.
+    NoLongestDelay { limits: Limits, delay: Span },
     /// The second definition of a name.
     DefinedTwice { what: Defined, name: Ident, first: Span },
     /// A package that nothing defines.
@@ -84,6 +86,14 @@ pub(crate) enum Problem {
     UnusedParameter { name: String, span: Span, program: Ident },
     /// A label that no `between` means.
     UnusedLabel { name: String, span: Span },
+    /// A second team.
+    SecondTeam { team: Ident, first: Span },
+    /// A team that nobody belongs to.
+    EmptyTeam { team: Ident },
+    /// A name of nobody in the team, or of anybody where there is none.
+    UnknownAgent { name: Ident, team: Option<Ident>, near: Option<String> },
+    /// A link from an agent to itself.
+    LinkToItself { agent: Ident, link: Span },
 }
 
 /// The one form of a body, and the bounds that can be put around it.
@@ -100,6 +110,7 @@ pub(crate) enum Defined {
     Program,
     NamedNumber,
     Class,
+    Agent,
 }
 
 /// A definition that is missing: how many parameters it has, and after what it could stand.

@@ -38,6 +38,10 @@ pub enum SymbolKind {
     Accessor,
     /// A package.
     Package,
+    /// A team.
+    Team,
+    /// An agent of the team.
+    Agent,
 }
 
 /// One place where a name is mentioned.
@@ -86,6 +90,7 @@ pub struct Uses {
     packages: BTreeMap<String, usize>,
     accessors: BTreeMap<String, usize>,
     labels: BTreeMap<String, usize>,
+    agents: BTreeMap<String, usize>,
 }
 
 impl Uses {
@@ -115,6 +120,14 @@ impl Uses {
                     let symbol = uses.define_again(known, SymbolKind::Accessor, accessor);
                     uses.accessors.insert(accessor.name.clone(), symbol);
                 }
+            }
+        }
+        for team in &program.teams {
+            uses.define(SymbolKind::Team, &team.name);
+            for agent in &team.agents {
+                let known = uses.agents.get(&agent.name).copied();
+                let symbol = uses.define_again(known, SymbolKind::Agent, agent);
+                uses.agents.insert(agent.name.clone(), symbol);
             }
         }
         let mut open: Vec<&Body> = program.programs.iter().flat_map(|program| &program.body).rev().collect();
@@ -168,6 +181,13 @@ impl Uses {
     /// Takes down that an accessor is named.
     pub(super) fn accessor(&mut self, name: &Ident) {
         if let Some(symbol) = self.accessors.get(&name.name) {
+            self.place(*symbol, name.span);
+        }
+    }
+
+    /// Takes down that an agent is named.
+    pub(super) fn agent(&mut self, name: &Ident) {
+        if let Some(symbol) = self.agents.get(&name.name) {
             self.place(*symbol, name.span);
         }
     }

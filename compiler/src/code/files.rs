@@ -34,6 +34,14 @@ silently. Leave it out, or give the source the network was compiled from.",
     right: "",
 };
 
+pub(super) const FOR_ONE_ALONE: Page = Page {
+    meaning: "This mission has a `define-team`: several execute it, each on what it hears. The command knows how one executive that hears
+everything would do, and its answer would be wrong of the team. `kirk check` judges the team, `kirk compile --agent NAME` prints
+what one agent executes, and `kirk run --simulate` executes all of them.",
+    wrong: "",
+    right: "",
+};
+
 pub(super) const BAD_OBSERVATION: Page = Page {
     meaning: "`--observe EVENT@T` says that news of EVENT arrives T seconds after the start; a file given with `--observations` is
 a JSON object of event: time. EVENT must be the end of a contingent duration, because everything else is dispatched by

@@ -153,3 +153,56 @@ name, as `a#2` means the second occurrence of `a`.",
   (declare (primitive) (duration (simple :lower-bound 5 :upper-bound 10))))
 (define-control-program main () (sequence () (short-delay)))",
 };
+
+pub(super) const UNKNOWN_AGENT: Page = Page {
+    meaning: "An agent is one that the `define-team` of the mission names, or a parameter that stands for one. Without a team a
+mission has one executive, and nothing in it needs an agent.",
+    wrong: "(define-team crew (agent astronaut) (agent robot) (link astronaut robot))
+(define-control-program dig () (declare (primitive) (agent robbot)))
+(define-control-program main () (dig))",
+    right: "(define-team crew (agent astronaut) (agent robot) (link astronaut robot))
+(define-control-program dig () (declare (primitive) (agent robot)))
+(define-control-program main () (dig))",
+};
+
+pub(super) const NOBODY_EXECUTES: Page = Page {
+    meaning: "In the mission of a team every activity is carried out by one of its agents: the one that its `declare` names, or else the
+one of the nearest `with-agent` around the call.",
+    wrong: "(define-team crew (agent astronaut) (agent robot) (link astronaut robot))
+(define-control-program dig () (declare (primitive)))
+(define-control-program main () (dig))",
+    right: "(define-team crew (agent astronaut) (agent robot) (link astronaut robot))
+(define-control-program dig () (declare (primitive)))
+(define-control-program main () (with-agent robot (dig)))",
+};
+
+pub(super) const NOT_THE_SAME_MOMENT: Page = Page {
+    meaning: "Without slack, what follows starts at the very moment at which what is before it ends. If Nature decides that moment, and the
+one agent hears of it later than it happens, it cannot act at that moment. With slack it acts as soon as the news is there, or at
+a time that does not depend on it.",
+    wrong: "(define-team crew (agent astronaut) (agent robot) (link astronaut robot :min-delay 5 :max-delay 15))
+(define-control-program talk ()
+  (declare (primitive) (agent astronaut) (duration (simple :lower-bound 5 :upper-bound 25) :contingent t)))
+(define-control-program dig ()
+  (declare (primitive) (agent robot) (duration (simple :lower-bound 5 :upper-bound 10))))
+(define-control-program main () (sequence () (talk) (dig)))",
+    right: "(define-team crew (agent astronaut) (agent robot) (link astronaut robot :min-delay 5 :max-delay 15))
+(define-control-program talk ()
+  (declare (primitive) (agent astronaut) (duration (simple :lower-bound 5 :upper-bound 25) :contingent t)))
+(define-control-program dig ()
+  (declare (primitive) (agent robot) (duration (simple :lower-bound 5 :upper-bound 10))))
+(define-control-program main () (sequence (:slack t) (talk) (dig)))",
+};
+
+pub(super) const UNREACHABLE: Page = Page {
+    meaning: "A constraint says something of the events of two agents, and no chain of links leads from the one to the other, so neither
+could ever act on what the other does.",
+    wrong: "(define-team crew (agent astronaut) (agent robot))
+(define-control-program talk () (declare (primitive) (agent astronaut)))
+(define-control-program dig () (declare (primitive) (agent robot)))
+(define-control-program main () (sequence (:slack t) (talk) (dig)))",
+    right: "(define-team crew (agent astronaut) (agent robot) (link astronaut robot))
+(define-control-program talk () (declare (primitive) (agent astronaut)))
+(define-control-program dig () (declare (primitive) (agent robot)))
+(define-control-program main () (sequence (:slack t) (talk) (dig)))",
+};

@@ -119,3 +119,28 @@ zero. A schedule for the average case may exist all the same; kirk promises more
   (with-temporal-constraint (simple-temporal :upper-bound 20)
     (drive)))",
 };
+
+pub(super) const NO_PROMISES: Page = Page {
+    meaning: "A team could execute this mission if everybody heard everything at once. As news is late, each agent has to act on what
+it knows, and on what others promise: that they will do something so long after something that both hear of. kirk looked
+for such promises and found none. The message says how much is missing and names the bounds and the delays that it is the
+sum of; the help names the links that would do if they were faster, or stamped. What was not found may exist all the same: kirk
+does not know ways in which agents signal by the time at which they do something else. A promise can be written by hand as a
+`between` of its two events.",
+    wrong: "(define-team crew (agent astronaut) (agent robot) (link astronaut robot :min-delay 5 :max-delay 15))
+(define-control-program talk ()
+  (declare (primitive) (agent astronaut) (duration (simple :lower-bound 15 :upper-bound 30) :contingent t)))
+(define-control-program drill ()
+  (declare (primitive) (agent robot)))
+(define-control-program main ()
+  (sequence (:slack t) (talk) (drill))
+  (between (end talk) (start drill) (simple-temporal :upper-bound 14)))",
+    right: "(define-team crew (agent astronaut) (agent robot) (link astronaut robot :min-delay 5 :max-delay 14))
+(define-control-program talk ()
+  (declare (primitive) (agent astronaut) (duration (simple :lower-bound 15 :upper-bound 30) :contingent t)))
+(define-control-program drill ()
+  (declare (primitive) (agent robot)))
+(define-control-program main ()
+  (sequence (:slack t) (talk) (drill))
+  (between (end talk) (start drill) (simple-temporal :upper-bound 14)))",
+};

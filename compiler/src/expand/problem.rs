@@ -1,6 +1,6 @@
 //! What can be wrong with a program as it is unfolded.
 
-use crate::ast::{Ident, ValueKind};
+use crate::ast::{Ident, Value, ValueKind};
 use crate::evaluate;
 use crate::source::Span;
 
@@ -21,6 +21,10 @@ pub(crate) enum Problem {
     TooDeep { program: Ident, depth: u64 },
     /// Here is one too many, perhaps as the program was called there.
     TooMany { what: Unfolded, span: Span, call: Option<Span> },
+    /// An activity of a team that is nobody's.
+    NobodyExecutes { program: Ident, call: Span },
+    /// What was given for an agent is none.
+    NoAgent { named: Span, value: Value, agents: Vec<String>, call: Span },
     /// A constraint from an event to itself.
     SameEvent { from: Span, to: Span },
     /// One name for two occurrences in one scope.

@@ -3,7 +3,7 @@
 use super::amount::{amount, is_calculation, is_name, number};
 use super::options::{flag, options};
 use super::problem::Problem;
-use super::{binding, ident, label, slips};
+use super::{binding, ident, label, slips, team};
 use crate::ast::{Argument, Body, Bounds, Call, Group, Limits, Role, Value, ValueKind, Wait, Within};
 use crate::form::{Form, FormKind, text_of};
 use crate::problem::Problems;
@@ -36,6 +36,7 @@ fn body(form: &Form, first: &Form, rest: &[Form], problems: &mut Problems) -> Op
         Some("dotimes") => binding::dotimes(form, first, rest, problems),
         Some("label") => label::label(form, first, rest, problems),
         Some("between") => label::between(form, first, rest, problems),
+        Some("with-agent") => team::with_agent(form, rest, problems),
         _ => call(form, first, rest, problems),
     }
 }

@@ -5,6 +5,7 @@ use super::condition::condition;
 use super::options::{flag, pairs};
 use super::problem::{Expected, Problem, Twice};
 use super::slips;
+use super::team;
 use crate::ast::{Condition, ControlProgram, DurationOf, Limits};
 use crate::form::Form;
 use crate::problem::Problems;
@@ -14,7 +15,7 @@ use crate::words::keywords;
 pub(super) const BOUNDS: [&str; 4] = keywords("simple");
 
 /// Those of `duration`.
-pub(super) const CHOICE: [&str; 1] = keywords("duration");
+pub(super) const CHOICE: [&str; 2] = keywords("duration");
 
 /// Adds declarations, which stand in a `declare` or should, to the program.
 pub(super) fn declare(declarations: &[Form], program: &mut ControlProgram, problems: &mut Problems) {
@@ -38,6 +39,7 @@ pub(super) fn declare(declarations: &[Form], program: &mut ControlProgram, probl
                     program.damaged |= program.duration.is_none();
                 }
             },
+            Some(("agent", inside)) => team::agent(item, inside, &mut program.agent, problems),
             Some(("requires", inside)) => only(&mut program.requires, item, inside, problems),
             Some(("effect", inside)) => only(&mut program.effect, item, inside, problems),
             // Lisp's way to say that a parameter is unused on purpose: nothing follows from it.
@@ -59,9 +61,9 @@ fn only(known: &mut Option<Condition>, item: &Form, inside: &[Form], problems: &
 fn duration(form: &Form, inside: &[Form], problems: &mut Problems) -> Option<DurationOf> {
     if let Some((simple, choice)) = inside.split_first()
         && let Some(("simple", bounds)) = simple.call()
-        && let (Some(bounds), Some([contingent])) = (pairs(bounds, BOUNDS), pairs(choice, CHOICE))
+        && let (Some(bounds), Some(choice)) = (pairs(bounds, BOUNDS), pairs(choice, CHOICE))
     {
-        return Some(Written { bounds, contingent }.duration(form, simple, problems));
+        return Some(Written { bounds, choice }.duration(form, simple, problems));
     }
     slips::declaration::no_duration(form, inside, problems)
 }
@@ -69,7 +71,7 @@ fn duration(form: &Form, inside: &[Form], problems: &mut Problems) -> Option<Dur
 /// The values given for a duration.
 pub(super) struct Written<'a> {
     pub(super) bounds: [Option<&'a Form>; 4],
-    pub(super) contingent: Option<&'a Form>,
+    pub(super) choice: [Option<&'a Form>; 2],
 }
 
 impl Written<'_> {
@@ -77,12 +79,13 @@ impl Written<'_> {
         let [lower, upper, min, max] = self.bounds;
         let is_delayed = [min, max].into_iter().flatten().any(|form| !form.is_error());
         let delayed = min.or(max).map_or(simple.span, |form| form.span);
-        let choice = self.contingent;
+        let [contingent, observer] = self.choice;
         DurationOf {
             delay: is_delayed.then(|| interval([min, max], Limits::ObservationDelay, delayed, problems)),
             bounds: interval([lower, upper], Limits::Duration, simple.span, problems),
-            contingent_nil: choice.filter(|form| form.word() == Some("nil")).map(|nil| nil.span),
-            contingent: choice.is_some_and(|form| flag(form, CHOICE[0], problems)),
+            contingent_nil: contingent.filter(|form| form.word() == Some("nil")).map(|nil| nil.span),
+            contingent: contingent.is_some_and(|form| flag(form, CHOICE[0], problems)),
+            observed_by: observer.and_then(|form| team::observer(form, problems)),
             span: form.span,
         }
     }

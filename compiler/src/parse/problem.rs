@@ -85,6 +85,13 @@ pub(crate) enum Expected {
     Event,
     /// A label or a program.
     Occurrence,
+    TeamName,
+    /// `(agent ...)` or `(link ...)`.
+    PartOfTeam,
+    /// One end of a link.
+    AgentOfLink,
+    /// The agent after `:observed-by`.
+    Observer,
 }
 
 /// What is missing in a form.
@@ -109,12 +116,20 @@ pub(crate) enum Missing {
     Between,
     SecondEvent,
     ConstraintBetween,
+    PartsOfTeam,
+    /// Both ends of a link.
+    Linked,
+    /// The agent of a `with-agent`, or its body.
+    PartsOfWithAgent,
+    /// The one agent of an `(agent ...)`.
+    Agent,
 }
 
 /// What may be given once.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Twice<'a> {
     Duration,
+    Agent,
     Keyword(&'a str),
 }
 

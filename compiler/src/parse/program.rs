@@ -35,6 +35,7 @@ pub(super) fn control_program(
         documentation: None,
         primitive: false,
         duration: None,
+        agent: None,
         requires: None,
         effect: None,
         body: Vec::new(),

@@ -1,13 +1,14 @@
 //! What is said about names, declarations and calls.
 
 use crate::analyse::problem::{Allowed, Defined, Limit, Problem};
-use crate::ast::{Ident, Value, ValueKind};
+use crate::ast::{Ident, Limits, Value, ValueKind};
 use crate::code::Code;
 use crate::diagnostic::{Diagnostic, Edit};
 use crate::form::{Form, FormKind, clip, write};
 use crate::parse::{DEFAULT_PACKAGE, suffixed};
 use crate::source::Span;
 use crate::wording::parse;
+use crate::words::usage;
 
 impl From<Problem> for Diagnostic {
     fn from(problem: Problem) -> Diagnostic {
@@ -72,10 +73,22 @@ impl From<Problem> for Diagnostic {
                     .help(help)
                     .suggest("Let Nature decide: `:contingent t`", [edit])
             }
-            Problem::NoLongestDelay { delay } => {
-                Diagnostic::error(Code::DelayReversed, delay, "the longest observation delay is missing")
+            Problem::ObserverNotContingent { program, observer } => {
+                let name = clip(&program.name);
+                let message = format!("the end of `{name}` is observed by somebody but is not contingent");
+                Diagnostic::error(Code::DelayNotContingent, observer, message)
+                    .primary("only what Nature decides has to be observed")
+                    .help("Add `:contingent t`, or take `:observed-by` out: of what an agent decides it knows itself.")
+            }
+            Problem::NoLongestDelay { limits, delay } => {
+                let [_, longest] = limits.words();
+                let help = match limits {
+                    Limits::Message => "Add `:max-delay`; `:infinity` says that messages may be lost.",
+                    _ => "Add `:max-observation-delay`; `:infinity` says that the news may never come.",
+                };
+                Diagnostic::error(Code::DelayReversed, delay, format!("{longest} is missing"))
                     .primary("only the shortest one is given")
-                    .help("Add `:max-observation-delay`; `:infinity` says that the news may never come.")
+                    .help(help)
             }
             Problem::DefinedTwice { what, name, first } => {
                 let what = match what {
@@ -83,6 +96,7 @@ impl From<Problem> for Diagnostic {
                     Defined::Program => "program",
                     Defined::NamedNumber => "named number",
                     Defined::Class => "class",
+                    Defined::Agent => "agent",
                 };
                 let message = format!("the {what} `{}` is defined twice", clip(&name.name));
                 Diagnostic::error(Code::DefinedTwice, name.span, message)
@@ -308,6 +322,37 @@ impl From<Problem> for Diagnostic {
                     .help(format!(
                         "If a constraint was to be about it: `(between (end {name}) (start ...) ...)`."
                     ))
+            }
+            Problem::SecondTeam { team, first } => {
+                let message = format!("`{}` is a second team", clip(&team.name));
+                Diagnostic::error(Code::DefinedTwice, team.span, message)
+                    .primary("again here")
+                    .label(first, "the first team")
+                    .help("A mission is executed by one team: put all its agents and links into one `define-team`.")
+            }
+            Problem::EmptyTeam { team } => {
+                let message = format!("nobody belongs to the team `{}`", clip(&team.name));
+                Diagnostic::error(Code::WrongShape, team.span, message)
+                    .primary("a team without agents")
+                    .help(usage("define-team"))
+            }
+            Problem::UnknownAgent { name, team, near } => {
+                let message = format!("`{}` is no agent", clip(&name.name));
+                let problem = Diagnostic::error(Code::UnknownAgent, name.span, message);
+                match team {
+                    Some(team) => problem
+                        .primary("nobody of this name is in the team")
+                        .label(team.span, "the team")
+                        .help(format!("Add `(agent {})` to the team.", clip(&name.name)))
+                        .meant(name.span, near),
+                    None => problem.primary("no team is defined").help(usage("define-team")),
+                }
+            }
+            Problem::LinkToItself { agent, link } => {
+                let message = format!("a link from `{}` to itself", clip(&agent.name));
+                Diagnostic::error(Code::WrongShape, link, message)
+                    .primary("both ends are the same agent")
+                    .help("An agent knows of its own events at once. How late it hears of what Nature decides is its `:max-observation-delay`.")
             }
         }
     }

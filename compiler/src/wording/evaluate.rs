@@ -74,7 +74,7 @@ impl From<Problem> for Diagnostic {
 fn reversed(problem: &Reversed) -> Diagnostic {
     let Reversed { limits, least, most, lower, upper, .. } = *problem;
     let code = match limits {
-        Limits::ObservationDelay => Code::DelayReversed,
+        Limits::ObservationDelay | Limits::Message => Code::DelayReversed,
         Limits::Duration | Limits::Wait => Code::LowerAboveUpper,
     };
     let [low, high] = limits.words();

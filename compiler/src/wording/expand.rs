@@ -29,6 +29,20 @@ impl From<Problem> for Diagnostic {
                 let problem = Diagnostic::error(Code::ContingentUnbounded, upper, message);
                 called(problem.primary("Nature could take forever"), call)
             }
+            Problem::NobodyExecutes { program, call } => {
+                let name = clip(&program.name);
+                Diagnostic::error(Code::NobodyExecutes, program.span, format!("no agent of the team executes `{name}`"))
+                    .primary("an activity of nobody")
+                    .label(call, "called here")
+                    .help(format!("Say who: `(agent ...)` in the `declare` of `{name}`, or `(with-agent ... ({name}))` around the call."))
+            }
+            Problem::NoAgent { named, value, agents, call } => {
+                let agents: Vec<String> = agents.iter().map(|agent| format!("`{}`", clip(agent))).collect();
+                let message = format!("{} is no agent of the team", clip(&source(&value.kind)));
+                called(Diagnostic::error(Code::UnknownAgent, named, message), call)
+                    .primary("this stands for it")
+                    .help(format!("The agents are {}.", agents.join(", ")))
+            }
             Problem::TooManyEpisodes { program, episodes, most } => {
                 let count = match episodes {
                     u64::MAX => "more episodes than can be counted".to_string(),

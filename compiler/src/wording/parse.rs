@@ -99,6 +99,9 @@ impl From<Problem<'_>> for Diagnostic {
     }
 }
 
+const TEAM: &str = usage("define-team");
+const LINK: &str = usage("link");
+
 fn misplaced(found: &Form, expected: Expected) -> Diagnostic {
     const CLASS: &str = usage("defclass");
     const PACKAGE: &str = usage("defpackage");
@@ -132,6 +135,10 @@ fn misplaced(found: &Form, expected: Expected) -> Diagnostic {
         Expected::LabelName => ("the name of the label", label::LABEL),
         Expected::Event => ("an event", label::EVENT),
         Expected::Occurrence => ("a label or the name of a program", label::EVENT),
+        Expected::TeamName => ("the name of the team", TEAM),
+        Expected::PartOfTeam => ("`(agent ...)` or `(link ...)`", TEAM),
+        Expected::AgentOfLink => ("the name of an agent", LINK),
+        Expected::Observer => ("the name of an agent", declaration::DURATION),
     };
     let problem = unexpected(found, wanted, help);
     match expected {
@@ -176,6 +183,12 @@ fn missing(at: Span, what: Missing) -> Diagnostic {
         Missing::Between => ("this `between` is empty", BETWEEN, label::BETWEEN),
         Missing::SecondEvent => ("a `between` with one event", BETWEEN, label::BETWEEN),
         Missing::ConstraintBetween => ("a `between` without a constraint", BETWEEN, label::BETWEEN),
+        Missing::PartsOfTeam => ("a team needs a name and its agents", FORM, TEAM),
+        Missing::Linked => ("the names of two agents were expected", FORM, LINK),
+        Missing::PartsOfWithAgent => {
+            ("an agent and a body were expected", FORM, const { usage("with-agent") })
+        }
+        Missing::Agent => ("the name of one agent was expected", FORM, const { usage("agent") }),
     };
     Diagnostic::error(Code::WrongShape, at, message).primary(primary).help(help)
 }
@@ -183,6 +196,7 @@ fn missing(at: Span, what: Missing) -> Diagnostic {
 fn twice(what: Twice, first: Span, again: Span, whole: Option<[Span; 2]>) -> Diagnostic {
     let message = match what {
         Twice::Duration => "the duration is given twice".to_string(),
+        Twice::Agent => "the agent is given twice".to_string(),
         Twice::Keyword(word) => format!("`:{word}` is given twice"),
     };
     let problem = Diagnostic::error(Code::KeywordTwice, again, message)

@@ -2,9 +2,9 @@
 
 use super::Layout::{Block, Hanging, Packed};
 use super::Piece::{
-    Bound, Class, Clause, Content, Flag, Form, Keywords, List, Name, Number, Occurrence, Options,
+    Agent, Bound, Class, Clause, Content, Flag, Form, Keywords, List, Name, Number, Occurrence, Options,
 };
-use super::Position::{Body, Condition, Constraint, Declaration, Declare, Definition, Duration, Event};
+use super::Position::{Body, Condition, Constraint, Declaration, Declare, Definition, Duration, Event, Team};
 use super::{Keyword, Layout, Piece, Position, Word};
 
 /// All words, in the order in which they are offered.
@@ -17,6 +17,16 @@ pub const WORDS: &[Word] = &[
         filled: " ${1:name} (${2})\n  ${0}",
         about: "Defines a program: an activity, if the first form is a `declare` that says `(primitive)`, else what its body does. A string before the forms says what it is for.",
         usage: "A program is `(define-control-program name (parameter...) (declare ...) body...)`.",
+        ..PLAIN
+    },
+    Word {
+        name: "define-team",
+        position: Definition,
+        parts: &[("name", Name), ("(agent ...)", Form(Team))],
+        layout: Block(2),
+        filled: " ${1:name}\n  (agent ${2:astronaut})\n  (agent ${3:robot})\n  (link ${2:astronaut} ${3:robot} :min-delay ${4:5} :max-delay ${5:15})",
+        about: "Defines who executes the mission together, and how late news reaches each of them.",
+        usage: "A team is `(define-team name (agent a) (agent b) (link a b :min-delay 5 :max-delay 15))`.",
         ..PLAIN
     },
     Word {
@@ -167,6 +177,26 @@ pub const WORDS: &[Word] = &[
         ..PLAIN
     },
     Word {
+        name: "with-agent",
+        position: Body,
+        parts: &[("agent", Agent), ("form...", Form(Body))],
+        layout: Block(2),
+        filled: " ${1:robot}\n  ${0}",
+        about: "The body in its place, executed by this agent of the team, as far as it names no other.",
+        usage: "Write `(with-agent robot body...)`.",
+        ..PLAIN
+    },
+    Word {
+        name: "link",
+        position: Team,
+        parts: &[("agent", Agent), ("agent", Agent), (":min-delay least :max-delay most", Keywords)],
+        keywords: LINK,
+        filled: " ${1:astronaut} ${2:robot} :min-delay ${3:5} :max-delay ${4:15}",
+        about: "News travels between these two agents, and takes so long.",
+        usage: "A link is `(link a b :min-delay 5 :max-delay 15)`; `:max-delay :infinity` says that messages may be lost.",
+        ..PLAIN
+    },
+    Word {
         name: "primitive",
         position: Declaration,
         filled: "",
@@ -182,6 +212,15 @@ pub const WORDS: &[Word] = &[
         filled: " (simple :lower-bound ${1:5} :upper-bound ${2:10})",
         about: "How long the activity takes; with `:contingent t` Nature decides.",
         usage: "A duration is `(duration (simple :lower-bound 15 :upper-bound 20))`, with `:contingent t` at its end if Nature decides.",
+    },
+    Word {
+        name: "agent",
+        position: Declaration,
+        parts: &[("agent", Agent)],
+        filled: " ${1:robot}",
+        about: "In a `define-team`, an agent of it. In a `declare`, the agent that executes the program: one of the team, or a parameter that stands for one.",
+        usage: "An agent is `(agent robot)`.",
+        ..PLAIN
     },
     Word {
         name: "requires",
@@ -322,7 +361,22 @@ const LOWER: Keyword = keyword("lower-bound", Number, "", "The least, in seconds
 const UPPER: Keyword =
     keyword("upper-bound", Bound, "", "The most, in seconds; without it there is no limit.");
 
-const DURATION: &[Keyword] = &[flag("contingent", "`t` if Nature decides how long it takes.")];
+const DURATION: &[Keyword] = &[
+    flag("contingent", "`t` if Nature decides how long it takes."),
+    keyword(
+        "observed-by",
+        Agent,
+        "",
+        "The agent of the team that hears of the end first, if it is another one.",
+    ),
+];
+
+const LINK: &[Keyword] = &[
+    keyword("min-delay", Number, "", "How long a message takes at the least; without it 0."),
+    keyword("max-delay", Bound, "", "How long it takes at the most; `:infinity` if it may be lost."),
+    flag("one-way", "`t` if messages go from the first agent to the second only."),
+    flag("stamped", "`t` if messages say when what they tell of happened, by clocks that agree."),
+];
 
 const GROUP: &[Keyword] = &[flag("slack", "`t` if time may pass between the parts, `nil` if not.")];
 

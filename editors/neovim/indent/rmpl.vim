@@ -12,7 +12,7 @@ if exists("*RmplIndent")
 endif
 
 " What has a body, which stands two columns in. The arguments of all else stand below the first one.
-let s:bodies = ['define-control-program', 'defparameter', 'defconstant', 'defclass', 'defpackage', 'declare', 'sequence', 'parallel', 'with-temporal-constraint', 'dotimes', 'let', 'let*', 'label', 'between', 'duration']
+let s:bodies = ['define-control-program', 'define-team', 'defparameter', 'defconstant', 'defclass', 'defpackage', 'declare', 'sequence', 'parallel', 'with-temporal-constraint', 'dotimes', 'let', 'let*', 'label', 'between', 'with-agent', 'duration']
 
 " How far a line is indented; -1 within a string or a block comment, where kirk changes nothing.
 function RmplIndent(line) abort

@@ -18,9 +18,9 @@ syntax match rmplEvent      "(\@1<=\%(start\|end\)\ze\s\+[^[:space:])]"
 syntax match rmplOperator   "(\@1<=\%(1+\|1-\|[-+*/=]\|min\|max\|mod\|and\|or\|not\|at\|over\|member\)\k\@!"
 syntax match rmplUnit       "(\@1<=\%(microseconds\|seconds\|minutes\|hours\|days\)\k\@!"
 syntax match rmplBounds     "(\@1<=\%(simple-temporal\|simple\)\k\@!"
-syntax match rmplDeclare    "(\@1<=\%(\k\+:\)\=\%(declare\|primitive\|duration\|requires\|effect\|ignore\|ignorable\)\k\@!"
-syntax match rmplForm       "(\@1<=\%(\k\+:\)\=\%(sequence\|parallel\|with-temporal-constraint\|delay\|dotimes\|let\|let\*\|label\|between\)\k\@!"
-syntax match rmplDefine     "(\@1<=\%(\k\+:\)\=\%(define-control-program\|defclass\|defparameter\|defconstant\|defpackage\|in-package\)\k\@!" nextgroup=rmplName skipwhite
+syntax match rmplDeclare    "(\@1<=\%(\k\+:\)\=\%(declare\|agent\|link\|primitive\|duration\|requires\|effect\|ignore\|ignorable\)\k\@!"
+syntax match rmplForm       "(\@1<=\%(\k\+:\)\=\%(sequence\|parallel\|with-temporal-constraint\|delay\|dotimes\|let\|let\*\|label\|between\|with-agent\)\k\@!"
+syntax match rmplDefine     "(\@1<=\%(\k\+:\)\=\%(define-control-program\|define-team\|defclass\|defparameter\|defconstant\|defpackage\|in-package\)\k\@!" nextgroup=rmplName skipwhite
 syntax match rmplName       "\k\+" contained
 syntax match rmplError      "[][{}`,\\]\|#'\k*"
 syntax region rmplString       start=+"+ skip=+\\.+ end=+"+ contains=@Spell

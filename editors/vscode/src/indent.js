@@ -7,6 +7,7 @@ const RIGHTMOST = 60;
 /** What has a body, which stands two columns in. The arguments of all else stand below the first one. */
 const BODIES = new Set([
   "define-control-program",
+  "define-team",
   "defparameter",
   "defconstant",
   "defclass",
@@ -20,6 +21,7 @@ const BODIES = new Set([
   "let*",
   "label",
   "between",
+  "with-agent",
   "duration",
 ]);
 

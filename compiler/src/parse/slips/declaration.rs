@@ -113,6 +113,7 @@ pub(in crate::parse) fn no_duration(
     };
     let inside = options(bounds, ANYWHERE, "simple", problems);
     let is_bound = |form: &Form| form.keyword().is_some_and(|word| BOUNDS.contains(&word));
+    let mut observer = None;
     let outside = match rest.iter().position(is_bound) {
         // Bounds after the `)` of `simple`: the first says it for all.
         Some(first) => {
@@ -120,7 +121,8 @@ pub(in crate::parse) fn no_duration(
             options(rest, ANYWHERE, "simple", problems)
         }
         None => {
-            let [contingent] = options(rest, CHOICE, "duration", problems);
+            let [contingent, observed] = options(rest, CHOICE, "duration", problems);
+            observer = observed;
             [None, None, None, None, contingent]
         }
     };
@@ -133,7 +135,7 @@ pub(in crate::parse) fn no_duration(
         problems.push(Problem::Declaration(slip));
     }
     let bounds = std::array::from_fn(|slot| inside[slot].or(outside[slot]));
-    Some(Written { bounds, contingent: contingent.or(misplaced) }.duration(form, simple, problems))
+    Some(Written { bounds, choice: [contingent.or(misplaced), observer] }.duration(form, simple, problems))
 }
 
 /// A bound behind the `)` of `simple`.

@@ -2,12 +2,12 @@
 
 use std::io;
 
-use kirk_compiler::{Severity, Span, to_sexpr, too_large};
+use kirk_compiler::{self as compiler, Compilation, Severity, Source, Span, to_sexpr, too_large};
 use kirk_network::dispatchable::dispatchable;
 use kirk_network::merge::merge;
 use kirk_network::precedence::Precedence;
 use kirk_network::reduce::{ReduceError, reduce};
-use kirk_network::{Network, graphml, json, text};
+use kirk_network::{Network, graphml, json, rmpl, text};
 use serde::Serialize;
 
 use crate::args::{Common, Compile, Stage, StageFormat};
@@ -15,15 +15,21 @@ use crate::foreign::visible;
 use crate::input::{Loaded, load_all};
 use crate::json::line;
 use crate::judge::judge;
-use crate::output::{Status, complain, deliver};
+use crate::output::{Status, complain, deliver, remark};
 use crate::report::Reporter;
+use crate::team;
 
 pub(crate) fn compile(arguments: &Compile, common: &Common) -> io::Result<Status> {
     let mut input = load_all(&arguments.files, &arguments.selection);
     let emitted = emit(arguments, &mut input);
     Reporter::new(&input.sources).show(&input.diagnostics, common)?;
     let text = match emitted {
-        Ok(text) => text,
+        Ok(text) => {
+            if let (Some(written), None, false) = (input.team(), &arguments.agent, common.quiet) {
+                remark(&team::what_else(written));
+            }
+            text
+        }
         Err(Refusal::Input) => return Ok(Status::Wrong),
         Err(Refusal::NotControllable) => return Ok(Status::No),
         Err(Refusal::Options(message)) => {
@@ -38,7 +44,7 @@ pub(crate) fn compile(arguments: &Compile, common: &Common) -> io::Result<Status
 }
 
 /// Why nothing was emitted.
-enum Refusal {
+pub(crate) enum Refusal {
     /// The diagnostics say why.
     Input,
     /// The diagnostics say why: there is nothing to execute.
@@ -48,14 +54,60 @@ enum Refusal {
 }
 
 fn emit(arguments: &Compile, input: &mut Loaded) -> Result<String, Refusal> {
+    match &arguments.agent {
+        Some(agent) => emit_view(arguments, input, agent),
+        None if input.team().is_some() => emit_team(arguments, input),
+        None => match arguments.emit {
+            Stage::Ast | Stage::Episodes => emit_program(arguments, input),
+            _ => {
+                let Some(network) = input.network.clone() else { return Err(Refusal::Input) };
+                emit_stage(arguments, &network, input)
+            }
+        },
+    }
+}
+
+/// What one agent executes: a network, or the program that it is.
+fn emit_view(arguments: &Compile, input: &mut Loaded, agent: &str) -> Result<String, Refusal> {
+    if input.network.is_none() {
+        return Err(Refusal::Input);
+    }
+    let view = team::view(input, agent)?;
+    match arguments.emit {
+        Stage::Ast | Stage::Episodes => {
+            let source = Source::new(agent, program(&view));
+            emit_compilation(&compiler::compile(&[source], &compiler::Options::default()), arguments)
+        }
+        _ => emit_stage(arguments, &view, input),
+    }
+}
+
+/// The whole team: what each agent executes is asked for by its name.
+fn emit_team(arguments: &Compile, input: &mut Loaded) -> Result<String, Refusal> {
+    match arguments.emit {
+        Stage::Ast | Stage::Episodes => return emit_program(arguments, input),
+        Stage::Stnu => {}
+        stage => input.for_one_alone(&format!("`--emit {}`", stage_name(stage))),
+    }
+    let (Some(network), Some(written)) = (&input.network, input.team()) else { return Err(Refusal::Input) };
+    match arguments.format {
+        StageFormat::Json => document(&team::NetworkJson::new(written, network)),
+        _ => emit_network(&merge(network).network, arguments),
+    }
+}
+
+/// A network as a program, laid out.
+pub(crate) fn program(network: &Network) -> String {
+    let text = rmpl::write(network);
+    compiler::format(&text).unwrap_or(text)
+}
+
+fn emit_stage(arguments: &Compile, network: &Network, input: &mut Loaded) -> Result<String, Refusal> {
     let format = arguments.format;
-    if let Stage::Ast | Stage::Episodes = arguments.emit {
-        return emit_program(arguments, input);
+    if arguments.emit == Stage::Rmpl {
+        let is_text = format == StageFormat::Text;
+        return if is_text { Ok(program(network)) } else { Err(no_such(arguments)) };
     }
-    if arguments.emit != Stage::Stnu {
-        input.for_one_alone(&format!("`--emit {}`", stage_name(arguments.emit)));
-    }
-    let Some(network) = &input.network else { return Err(Refusal::Input) };
     let merged = merge(network).network;
     if arguments.emit == Stage::Stnu {
         return emit_network(&merged, arguments);
@@ -110,6 +162,10 @@ fn emit_program(arguments: &Compile, input: &Loaded) -> Result<String, Refusal> 
     if input.diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error) {
         return Err(Refusal::Input);
     }
+    emit_compilation(compilation, arguments)
+}
+
+fn emit_compilation(compilation: &Compilation, arguments: &Compile) -> Result<String, Refusal> {
     match (arguments.emit, &compilation.episodes) {
         (Stage::Ast, _) => emit_serialized(&compilation.ast, arguments),
         (_, Some(episodes)) => emit_serialized(episodes, arguments),
@@ -159,11 +215,17 @@ fn no_such(arguments: &Compile) -> Refusal {
     Refusal::Options(format!(
         "--emit {} cannot be written as {}; try {}",
         stage_name(arguments.emit),
-        if arguments.format == StageFormat::Dot { "dot" } else { "graphml" },
-        if arguments.emit == Stage::Dispatchable {
-            "text, json, sexpr or dot"
-        } else {
-            "text, json or sexpr"
+        match arguments.format {
+            StageFormat::Text => "text",
+            StageFormat::Json => "json",
+            StageFormat::Sexpr => "sexpr",
+            StageFormat::Dot => "dot",
+            StageFormat::Graphml => "graphml",
+        },
+        match arguments.emit {
+            Stage::Rmpl => "text",
+            Stage::Dispatchable => "text, json, sexpr or dot",
+            _ => "text, json or sexpr",
         }
     ))
 }
@@ -175,5 +237,6 @@ fn stage_name(stage: Stage) -> &'static str {
         Stage::Stnu => "stnu",
         Stage::Reduced => "reduced",
         Stage::Dispatchable => "dispatchable",
+        Stage::Rmpl => "rmpl",
     }
 }

@@ -6,9 +6,10 @@ use kirk_network::generate::{
     Bounds, Exponential, GenerateError, Lambda, LaneOptions, Link, MOST_ATTEMPTS, RepeaterOptions,
     SamplingOptions, controllable, lanes, repeaters, sampling,
 };
-use kirk_network::{Network, json, rmpl};
+use kirk_network::{Network, json};
 
 use crate::args::{BoundsKind, Common, Family, Generate, JsonOrRmpl, LinkKind, Size};
+use crate::compile::program;
 use crate::output::{Status, complain, deliver, remark};
 
 pub(crate) fn generate(arguments: &Generate, common: &Common) -> io::Result<Status> {
@@ -44,10 +45,7 @@ pub(crate) fn generate(arguments: &Generate, common: &Common) -> io::Result<Stat
     };
     let text = match size.format {
         JsonOrRmpl::Json => json::write(&network) + "\n",
-        JsonOrRmpl::Rmpl => {
-            let program = rmpl::write(&network);
-            kirk_compiler::format(&program).unwrap_or(program)
-        }
+        JsonOrRmpl::Rmpl => program(&network),
     };
     deliver(&text, size.output.as_deref())
 }

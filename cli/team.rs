@@ -1,13 +1,19 @@
 //! The mission of a team: the verdict on it, for people and as part of `kirk-check/1`.
 
+use std::collections::BTreeMap;
 use std::time::Instant;
 
-use kirk_compiler::{Explain, Span};
-use kirk_network::{Delay, Duration};
+use kirk_compiler::{Explain, Span, Team, nearest};
+use kirk_network::merge::merge;
+use kirk_network::{Delay, Duration, Network, json};
 use kirk_team::mission::judge as judge_team;
-use kirk_team::{Agreement, Cause, Change, Member, Mission, NotFound, Options, Promise, Remedy, Verdict};
+use kirk_team::{
+    AgentId, Agreement, Cause, Change, Member, Mission, NotFound, Options, Promise, Remedy, Verdict,
+};
 use serde::Serialize;
+use serde_json::value::RawValue;
 
+use crate::compile::Refusal;
 use crate::conflict::SpotJson;
 use crate::input::Loaded;
 use crate::judge::Judged;
@@ -39,6 +45,38 @@ pub(crate) fn judge(input: &mut Loaded, theory: bool) -> Option<Judged> {
     Some(Judged::by_team(mission, found, seconds))
 }
 
+/// What one agent of the team of an input executes.
+///
+/// # Errors
+/// Why there is no such thing; if the team cannot be sure of it that is among the diagnostics.
+pub(crate) fn view(input: &mut Loaded, agent: &str) -> Result<Network, Refusal> {
+    let Some(written) = input.team() else {
+        return Err(Refusal::Options(format!(
+            "`--agent {agent}` asks what one agent of a team executes, and this mission has no `define-team`"
+        )));
+    };
+    let wanted = agent.to_lowercase();
+    let Some(number) = written.agents.iter().position(|known| *known == wanted) else {
+        let near = nearest(&wanted, written.agents.iter().map(String::as_str));
+        let near = near.map_or(String::new(), |near| format!(" (did you mean `{near}`?)"));
+        let known = written.agents.join(", ");
+        return Err(Refusal::Options(format!(
+            "no agent of the team is called `{agent}`{near}; the agents are {known}"
+        )));
+    };
+    let mission = judge(input, false).and_then(|judged| judged.team).ok_or(Refusal::Input)?;
+    mission.view(AgentId(number as u32)).ok_or(Refusal::NotControllable)
+}
+
+/// What can be asked for instead of the network of the whole team.
+pub(crate) fn what_else(written: &Team) -> String {
+    let Team { name, agents, .. } = written;
+    format!(
+        "this is all of the team `{name}`; `--agent NAME` prints what one of its agents executes: {}",
+        agents.join(", ")
+    )
+}
+
 /// The verdict as the end of "`main` is ...".
 pub(crate) fn verdict(mission: &Mission) -> String {
     let name = &mission.name;
@@ -65,6 +103,55 @@ pub(crate) fn promised(mission: &Mission, verbose: bool) -> String {
         lines.push(format!("{}:\n{}", mission.team.name(view.agent), treatment(&view.network)));
     }
     lines.concat()
+}
+
+/// `kirk-team/1`: the network of a team's mission, and whose each event is. A network file would be read as that of one alone.
+#[derive(Serialize)]
+pub(crate) struct NetworkJson<'a> {
+    format: &'static str,
+    name: &'a str,
+    agents: &'a [String],
+    links: Vec<LinkJson<'a>>,
+    /// By each name of each event that is somebody's.
+    owners: BTreeMap<&'a str, &'a str>,
+    network: Option<Box<RawValue>>,
+}
+
+#[derive(Serialize)]
+struct LinkJson<'a> {
+    from: &'a str,
+    to: &'a str,
+    delay: (Duration, Option<Duration>),
+    one_way: bool,
+    stamped: bool,
+}
+
+impl<'a> NetworkJson<'a> {
+    pub(crate) fn new(written: &'a Team, network: &'a Network) -> NetworkJson<'a> {
+        let agent = |number: u32| written.agents[number as usize].as_str();
+        let link = |link: &kirk_compiler::Link| LinkJson {
+            from: agent(link.from),
+            to: agent(link.to),
+            delay: (link.delay.min, link.delay.max.finite()),
+            one_way: link.one_way,
+            stamped: link.stamped,
+        };
+        let mut owners = BTreeMap::new();
+        for (event, owner) in network.events().iter().zip(&written.owners) {
+            let names = event.names.iter().map(|name| name.text.as_str());
+            owners.extend(
+                owner.into_iter().flat_map(|owner| names.clone().map(move |name| (name, agent(*owner)))),
+            );
+        }
+        NetworkJson {
+            format: "kirk-team/1",
+            name: &written.name,
+            agents: &written.agents,
+            links: written.links.iter().map(link).collect(),
+            owners,
+            network: RawValue::from_string(json::write(&merge(network).network)).ok(),
+        }
+    }
 }
 
 /// `team` of `kirk-check/1`.

@@ -81,3 +81,125 @@ fn what_knows_one_executive_refuses_a_team() {
         assert!(stderr(&output).contains("error[K0705]"), "{arguments:?}: {}", stderr(&output));
     }
 }
+
+#[test]
+fn each_agent_has_a_view_in_every_format_and_it_can_be_executed() {
+    let drill = file("drill");
+    let mut shown = String::new();
+    for agent in ["astronaut", "robot"] {
+        for emit in ["stnu", "rmpl"] {
+            let output = kirk(&["compile", "--agent", agent, "--emit", emit, &drill]);
+            assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+            shown.push_str(&format!("; {agent}, {emit}\n{}\n", stdout(&output)));
+        }
+        let network = kirk(&["compile", "--agent", agent, "--format", "json", &drill]);
+        let again = kirk_with_input(&["run", "-", "--simulate"], &network.stdout);
+        assert_eq!(again.status.code(), Some(0), "{agent}: {}", stderr(&again));
+        for emit in ["ast", "episodes", "reduced", "dispatchable"] {
+            let output = kirk(&["compile", "--agent", agent, "--emit", emit, "--format", "json", &drill]);
+            assert_eq!(output.status.code(), Some(0), "{agent} {emit}: {}", stderr(&output));
+            serde_json::from_str::<Value>(&stdout(&output)).unwrap();
+        }
+    }
+    insta::assert_snapshot!(shown);
+}
+
+#[test]
+fn the_program_of_a_view_is_the_view() {
+    for name in ["drill", "free"] {
+        for agent in ["astronaut", "robot"] {
+            let output = kirk(&["compile", "--agent", agent, "--format", "json", &file(name)]);
+            let view = kirk::network::json::read(&stdout(&output)).unwrap();
+            let output = kirk(&["compile", "--agent", agent, "--emit", "rmpl", &file(name)]);
+            let source = kirk::Source::new("view", stdout(&output));
+            let compilation = kirk::compile(&[source], &kirk::Options::default());
+            let program = compilation.lowered.expect("a program").network;
+            assert_eq!(distances(&program, &view), distances(&view, &view), "{name} {agent}");
+            assert_eq!(links(&program, &view), links(&view, &view), "{name} {agent}");
+            let laid_out = kirk_with_input(&["fmt", "-"], &output.stdout);
+            assert_eq!(stdout(&laid_out), stdout(&output), "{name} {agent}");
+        }
+    }
+}
+
+/// The event of a network, or of the program that it was written as, in a program under the name of its activity or of its label.
+fn event_in(network: &kirk::Network, name: &str) -> usize {
+    let plain = name.replace(':', ".");
+    let names = [name.to_string(), format!("{plain}:end"), format!("{plain}:start")];
+    names.iter().find_map(|name| network.find(name)).expect(name).index()
+}
+
+/// From each event of a view to each other the longest and shortest ways, with durations of Nature's as requirements.
+fn distances(network: &kirk::Network, view: &kirk::Network) -> Vec<i64> {
+    let far = i64::MAX / 4;
+    let count = network.events().len();
+    let mut ways = vec![vec![far; count]; count];
+    for (event, row) in ways.iter_mut().enumerate() {
+        row[event] = 0;
+        row[network.origin().index()] = 0;
+    }
+    let mut edge = |from: usize, to: usize, weight: i64| ways[from][to] = ways[from][to].min(weight);
+    for (from, to, weight) in network.requirements().iter().flat_map(|it| it.edges()).flatten() {
+        edge(from.index(), to.index(), weight.as_micros());
+    }
+    for link in network.contingents() {
+        edge(link.from.index(), link.to.index(), link.upper.as_micros());
+        edge(link.to.index(), link.from.index(), -link.lower.as_micros());
+    }
+    for over in 0..count {
+        for from in 0..count {
+            for to in 0..count {
+                ways[from][to] = ways[from][to].min(ways[from][over] + ways[over][to]).min(far);
+            }
+        }
+    }
+    let events: Vec<usize> = view.event_ids().map(|event| event_in(network, view.id(event))).collect();
+    events
+        .iter()
+        .flat_map(|&from| events.iter().map(move |&to| (from, to)))
+        .map(|(a, b)| ways[a][b])
+        .collect()
+}
+
+/// Nature's durations and the delays of their news, by what they end in.
+fn links(network: &kirk::Network, view: &kirk::Network) -> Vec<String> {
+    let network = &kirk::network::merge::merge(network).network;
+    let link = |event| {
+        let end = kirk::EventId(event_in(network, view.id(event)) as u32);
+        let link = network.link_of(end).map(|link| network.contingents()[link]);
+        link.map(|it| format!("{} {} {:?}", it.lower, it.upper, it.delay))
+    };
+    view.event_ids().map(|event| format!("{} {:?}", view.id(event), link(event))).collect()
+}
+
+#[test]
+fn the_network_of_a_team_is_no_network_of_one_alone() {
+    let output = kirk(&["compile", &file("drill")]);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(
+        stderr(&output).contains("`--agent NAME` prints what one of its agents executes: astronaut, robot")
+    );
+    let document = document(&["compile", "--quiet", "--format", "json", &file("drill")]);
+    assert_eq!(
+        (&document["format"], &document["owners"]["drill:end"]),
+        (&"kirk-team/1".into(), &"robot".into())
+    );
+    assert_eq!(document["network"]["format"], "kirk-network/1");
+    let refused = kirk_with_input(&["check", "-"], document.to_string().as_bytes());
+    assert_eq!(refused.status.code(), Some(2));
+    for (arguments, says) in [
+        (vec!["compile", "--agent", "robt", "tests/rmpl/team/drill.rmpl"], "(did you mean `robot`?)"),
+        (
+            vec!["compile", "--agent", "robot", "examples/rmpl/robot.rmpl"],
+            "this mission has no `define-team`",
+        ),
+        (vec!["compile", "--emit", "rmpl", "--format", "dot", "examples/rmpl/robot.rmpl"], "try text"),
+    ] {
+        let output = kirk(&arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(stderr(&output).contains(says), "{arguments:?}: {}", stderr(&output));
+    }
+    let output = kirk(&["compile", "--agent", "robot", &file("not-found")]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stderr(&output).contains("error[K0602]"), "{}", stderr(&output));
+}

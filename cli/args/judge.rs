@@ -59,6 +59,9 @@ pub(crate) struct Compile {
     pub(crate) files: Vec<String>,
     #[command(flatten)]
     pub(crate) selection: Selection,
+    /// Of a team's mission: what this agent executes.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) agent: Option<String>,
     /// Which stage to print.
     #[arg(long, value_enum, default_value_t = Stage::Stnu, value_name = "WHAT")]
     pub(crate) emit: Stage,
@@ -82,6 +85,8 @@ pub(crate) enum Stage {
     Reduced,
     /// The network that is executed.
     Dispatchable,
+    /// The network as a program, such as what one agent of a team executes.
+    Rmpl,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

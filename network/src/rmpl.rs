@@ -1,4 +1,5 @@
-//! A network as an RMPL program: every contingent link an activity, every requirement a `between`.
+//! A network as an RMPL program: every contingent link an activity, as well as what we execute from `x:start` to `x:end`; every other
+//! requirement a `between`.
 //!
 //! The program means the same network and reads like a list. It is for networks that were generated or converted and are
 //! to be gone on with by hand.
@@ -6,7 +7,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-use crate::model::{ContingentLink, Delay, EventId, Network};
+use crate::model::{ContingentLink, Delay, EventId, Network, Requirement};
 use crate::time::{Bound, Duration};
 
 /// Writes a network as a program that compiles to it, with some events more (those of `main` and of its forms).
@@ -41,6 +42,7 @@ impl Writer<'_> {
         for link in network.contingents() {
             joins.extend(self.activity(link));
         }
+        let ours: Vec<bool> = network.requirements().iter().map(|it| self.activity_of_ours(it)).collect();
         for event in network.event_ids() {
             if self.addresses[event.index()].is_empty() {
                 let label = self.label(event);
@@ -54,7 +56,7 @@ impl Writer<'_> {
                 self.addresses[event.index()]
             );
         }
-        for requirement in network.requirements() {
+        for (requirement, _) in network.requirements().iter().zip(&ours).filter(|(_, is_said)| !**is_said) {
             self.requirement(requirement.from, requirement.to, requirement.lower, requirement.upper);
         }
         format!(
@@ -116,6 +118,29 @@ impl Writer<'_> {
             return None;
         }
         Some((link.from, start))
+    }
+
+    /// True if a requirement says how long something of ours takes, which becomes an activity.
+    fn activity_of_ours(&mut self, &Requirement { from, to, lower, upper }: &Requirement) -> bool {
+        let is_free = |event: EventId| {
+            self.network.link_of(event).is_none() && self.addresses[event.index()].is_empty()
+        };
+        let (start, end) = (self.network.label(from), self.network.label(to));
+        let base = start.strip_suffix(":start").filter(|base| end.strip_suffix(":end") == Some(base));
+        let least = lower.finite().filter(|lower| *lower >= Duration::ZERO);
+        let (Some(base), Some(least), true) = (base, least, is_free(from) && is_free(to)) else {
+            return false;
+        };
+        let name = self.name(base);
+        let most = upper.finite().map_or(String::new(), |upper| format!(" :upper-bound {upper}"));
+        let _ = write!(
+            self.programs,
+            "(define-control-program {name} ()\n  (declare (primitive)\n    (duration (simple :lower-bound {least}{most}))))\n\n"
+        );
+        let _ = writeln!(self.activities, "      ({name})");
+        self.addresses[from.index()] = format!("(start {name})");
+        self.addresses[to.index()] = format!("(end {name})");
+        true
     }
 
     fn requirement(&mut self, from: EventId, to: EventId, lower: Bound, upper: Bound) {

@@ -1,11 +1,13 @@
 //! From a mission as it is compiled to a team and the verdict on it, in the words and places of its source.
 
+use std::collections::BTreeMap;
+
 use kirk_compiler::{self as compiler, Code, Diagnostic, Explain, OriginKind, Origins, Span, too_large};
 use kirk_network::stnu::TooLarge;
-use kirk_network::{Duration, EventId, Network};
+use kirk_network::{Bound, Duration, EventId, Network, Requirement};
 
 use crate::find::{Agreement, Options, Verdict, find};
-use crate::model::{Link, Team, TeamError};
+use crate::model::{AgentId, Link, Team, TeamError};
 use crate::shortage::{Remedy, remedies};
 use crate::wording;
 
@@ -100,6 +102,33 @@ impl Mission {
     /// What the agents have agreed on, if they can do it.
     pub fn agreement(&self) -> Option<&Agreement> {
         if let Verdict::Yes(agreement) = &self.verdict { Some(agreement) } else { None }
+    }
+
+    /// What an agent executes, with one requirement at most between any two events, from the earlier to the later if that is known.
+    pub fn view(&self, agent: AgentId) -> Option<Network> {
+        let view = &self.agreement()?.views.get(agent.index())?.network;
+        let mut bounds: BTreeMap<(EventId, EventId), (i64, i64)> = BTreeMap::new();
+        for (from, to, most) in view.requirements().iter().flat_map(|it| it.edges()).flatten() {
+            let (ends, is_upper) = if from < to { ((from, to), true) } else { ((to, from), false) };
+            let (least, upper) = bounds.entry(ends).or_insert((i64::MIN, i64::MAX));
+            match is_upper {
+                true => *upper = most.as_micros().min(*upper),
+                false => *least = (-most.as_micros()).max(*least),
+            }
+        }
+        let finite = |bound: i64| Bound::Finite(Duration::from_micros(bound));
+        let lower = |bound: i64| if bound == i64::MIN { Bound::Infinite } else { finite(bound) };
+        let upper = |bound: i64| if bound == i64::MAX { Bound::Infinite } else { finite(bound) };
+        let requirement = |((from, to), (least, most)): ((EventId, EventId), (i64, i64))| match most {
+            ..=0 if least < 0 => {
+                let upper = if least == i64::MIN { Bound::Infinite } else { finite(-least) };
+                Requirement { from: to, to: from, lower: finite(-most), upper }
+            }
+            _ => Requirement { from, to, lower: lower(least), upper: upper(most) },
+        };
+        let requirements = bounds.into_iter().map(requirement).collect();
+        let (events, contingents) = (view.events().to_vec(), view.contingents().to_vec());
+        Network::new(view.name().to_string(), view.origin(), events, requirements, contingents).ok()
     }
 
     /// Why not, in the source; nothing if they can. What would settle a conflict of the whole is not said: it may not be enough where

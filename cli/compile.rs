@@ -2,6 +2,7 @@
 
 use std::io;
 
+use clap::ValueEnum;
 use kirk_compiler::{self as compiler, Compilation, Severity, Source, Span, to_sexpr, too_large};
 use kirk_network::dispatchable::dispatchable;
 use kirk_network::merge::merge;
@@ -87,7 +88,7 @@ fn emit_team(arguments: &Compile, input: &mut Loaded) -> Result<String, Refusal>
     match arguments.emit {
         Stage::Ast | Stage::Episodes => return emit_program(arguments, input),
         Stage::Stnu => {}
-        stage => input.for_one_alone(&format!("`--emit {}`", stage_name(stage))),
+        stage => input.for_one_alone(&format!("`--emit {}`", word(stage))),
     }
     let (Some(network), Some(written)) = (&input.network, input.team()) else { return Err(Refusal::Input) };
     match arguments.format {
@@ -153,7 +154,7 @@ fn emit_program(arguments: &Compile, input: &Loaded) -> Result<String, Refusal> 
         if input.network.is_none() {
             return Err(Refusal::Input);
         }
-        let stage = stage_name(arguments.emit);
+        let stage = word(arguments.emit);
         return Err(Refusal::Options(format!(
             "`{}` is a network; it has no {stage}. Stages of a network: stnu, reduced, dispatchable",
             arguments.files.join(" ")
@@ -212,31 +213,19 @@ fn sexpr_of_json(text: &str) -> Result<String, Refusal> {
 }
 
 fn no_such(arguments: &Compile) -> Refusal {
+    let others = match arguments.emit {
+        Stage::Rmpl => "text",
+        Stage::Dispatchable => "text, json, sexpr or dot",
+        _ => "text, json or sexpr",
+    };
     Refusal::Options(format!(
-        "--emit {} cannot be written as {}; try {}",
-        stage_name(arguments.emit),
-        match arguments.format {
-            StageFormat::Text => "text",
-            StageFormat::Json => "json",
-            StageFormat::Sexpr => "sexpr",
-            StageFormat::Dot => "dot",
-            StageFormat::Graphml => "graphml",
-        },
-        match arguments.emit {
-            Stage::Rmpl => "text",
-            Stage::Dispatchable => "text, json, sexpr or dot",
-            _ => "text, json or sexpr",
-        }
+        "--emit {} cannot be written as {}; try {others}",
+        word(arguments.emit),
+        word(arguments.format)
     ))
 }
 
-fn stage_name(stage: Stage) -> &'static str {
-    match stage {
-        Stage::Ast => "ast",
-        Stage::Episodes => "episodes",
-        Stage::Stnu => "stnu",
-        Stage::Reduced => "reduced",
-        Stage::Dispatchable => "dispatchable",
-        Stage::Rmpl => "rmpl",
-    }
+/// What a choice is called on the command line.
+fn word(choice: impl ValueEnum) -> String {
+    choice.to_possible_value().map_or(String::new(), |value| value.get_name().to_string())
 }

@@ -93,12 +93,8 @@ impl Observations {
     fn add(&mut self, name: &str, time: Duration, span: Span, network: &Network) {
         let Some(event) = network.find(name) else {
             let names = network.event_ids().filter(|&event| network.link_of(event).is_some());
-            let known: Vec<String> = names
-                .flat_map(|event| network.events()[event.index()].names.iter())
-                .filter(|name| !name.internal)
-                .map(|name| name.text.clone())
-                .collect();
-            let near = kirk_compiler::nearest(name, known.iter().map(String::as_str));
+            let known: Vec<&str> = names.flat_map(|event| network.written(event)).collect();
+            let near = kirk_compiler::nearest(name, known.iter().copied());
             return self.wrong(Problem::UnknownEvent { name, known: &known, near }, span);
         };
         if network.link_of(event).is_none() {

@@ -5,21 +5,23 @@ mod text;
 
 use std::io;
 
-use kirk_compiler::{Code, Diagnostic, Span, nearest};
+use kirk_compiler::nearest;
 use kirk_network::left::Left;
 use kirk_network::promise::Promise;
 use kirk_network::{Duration, EventId, Network, Time};
+use kirk_runtime::execution::is_record;
 use kirk_runtime::journal::{is_journal, read as read_journal};
-use kirk_runtime::{Ended, Heard, Situation, Unheard, Waits};
+use kirk_runtime::{Ended, Heard, Situation, Waits};
 
 use crate::args::{Common, Query, Selection, TextOrJson};
 use crate::input::{Bytes, load_begun, read};
-use crate::observations::{self, Observations};
+use crate::observations::Observations;
 use crate::output::{Status, complain, print, remark};
 use crate::replay::LARGEST_JOURNAL;
 use crate::report::Reporter;
 use crate::run::plan_of;
 use crate::verify::execution_of;
+use crate::wording::{Problem, no_event};
 
 pub(crate) fn query(arguments: &Query, common: &Common) -> io::Result<Status> {
     let wrong = |message: String| {
@@ -65,8 +67,10 @@ pub(crate) fn query(arguments: &Query, common: &Common) -> io::Result<Status> {
         match situation.hear(observation.event, observation.time) {
             Ok(heard) => answer.heard.push((observation.event, observation.time, heard)),
             Err(unheard) => {
-                let refused = refusal(observation, unheard, &network, situation.now());
-                given.diagnostics.push(refused);
+                let (name, time) = (observation.name.as_str(), observation.time);
+                let problem =
+                    Problem::Unheard { name, time, why: unheard, network: &network, now: situation.now() };
+                given.diagnostics.push(problem.at(observation.span));
                 break;
             }
         }
@@ -148,9 +152,7 @@ fn picture(situation: &Situation, chosen: Option<&[EventId]>) -> Picture {
     let network = situation.network();
     let line = |event: EventId| {
         let left = *left.get(event.index())?;
-        let all = network.events()[event.index()].names.iter();
-        let mut names: Vec<String> =
-            all.filter(|name| !name.internal).map(|name| name.text.clone()).collect();
+        let mut names: Vec<String> = network.written(event).map(str::to_string).collect();
         if names.is_empty() && chosen.is_some() {
             names.push(network.label(event).to_string());
         }
@@ -210,12 +212,6 @@ fn subject(arguments: &Query, at: Option<Time>, common: &Common) -> io::Result<R
             }))
         }
     }
-}
-
-/// True if a file looks like a record: it says so, in one of its first fields.
-fn is_record(bytes: &[u8]) -> bool {
-    let head = String::from_utf8_lossy(&bytes[..bytes.len().min(200)]).to_string();
-    head.trim_start_matches('\u{feff}').trim_start().starts_with('{') && head.contains("\"kirk-execution/")
 }
 
 /// A journal is read as it is, without its lock: the mission may be running, and its last record half written.
@@ -314,36 +310,7 @@ fn moment(text: &str) -> Result<Time, String> {
 /// The event of a name.
 fn event(network: &Network, name: &str) -> Result<EventId, String> {
     network.find(name).ok_or_else(|| {
-        let names = network.events().iter().flat_map(|event| event.names.iter());
-        let names = names.filter(|name| !name.internal).map(|name| name.text.as_str());
-        let near = nearest(name, names).map(|near| format!("; did you mean `{near}`?"));
-        format!("there is no event `{name}`{}", near.unwrap_or_default())
+        let names = network.event_ids().flat_map(|event| network.written(event));
+        no_event(name, nearest(name, names))
     })
-}
-
-/// What is wrong with news that cannot come then, whatever the model says.
-fn refusal(heard: &observations::Heard, unheard: Unheard, network: &Network, now: Time) -> Diagnostic {
-    let (name, time) = (&heard.name, heard.time);
-    let (message, help) = match unheard {
-        Unheard::Past => (
-            format!("news of `{name}` at {time} s is in the past: it is {now} s"),
-            "`--at` asks of an earlier time".to_string(),
-        ),
-        Unheard::NotBegun { start } => (
-            format!("`{name}` cannot be heard of at {time} s: it has not begun"),
-            format!("it begins with `{}`, which is not executed by then", network.label(start)),
-        ),
-        Unheard::Before(before) => {
-            (format!("`{name}` was heard at {before} s"), "news of an event arrives once".to_string())
-        }
-        Unheard::NotNatures => (
-            format!("`{name}` is not Nature's to decide: kirk dispatches it"),
-            "only the ends of contingent durations are heard of".to_string(),
-        ),
-        Unheard::Over => (
-            format!("`{name}` cannot be heard of at {time} s: nothing goes on by then"),
-            "`--at` asks of an earlier time".to_string(),
-        ),
-    };
-    Diagnostic::error(Code::ImpossibleObservation, Span { ..heard.span }, message).help(help)
 }

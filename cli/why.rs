@@ -64,11 +64,8 @@ fn label(network: &Network, event: EventId) -> String {
 /// Of the names of an event the one that belongs with another: `drill:start` beside `drill:end`.
 fn name_beside<'a>(network: &'a Network, event: EventId, other: &str) -> &'a str {
     let stem = |name: &str| name.rsplit_once(':').map(|(stem, _)| stem.to_string());
-    let names = &network.events()[event.index()].names;
-    let sibling = names
-        .iter()
-        .find(|name| !name.internal && stem(&name.text).is_some_and(|it| Some(it) == stem(other)));
-    sibling.map_or(network.label(event), |name| &name.text)
+    let is_sibling = |name: &&str| stem(name).is_some_and(|it| Some(it) == stem(other));
+    network.written(event).find(is_sibling).unwrap_or(network.label(event))
 }
 
 /// At the time of another event: for one of Nature's that is when its news is acted on, or the lack of it.

@@ -3,9 +3,9 @@
 use std::io;
 
 use kirk_compiler::{Code, Diagnostic, Span};
-use kirk_network::ParseDurationError;
-use kirk_runtime::Impossible;
+use kirk_network::{Network, ParseDurationError, Time};
 use kirk_runtime::execution::FORMAT;
+use kirk_runtime::{Impossible, Unheard};
 
 /// What is wrong, and what is known about it.
 pub(crate) enum Problem<'a> {
@@ -44,7 +44,7 @@ pub(crate) enum Problem<'a> {
     /// What a reader of observations says.
     BadObservations(String),
     /// An observation of nothing; what there is to be observed, and what of it was probably meant.
-    UnknownEvent { name: &'a str, known: &'a [String], near: Option<&'a str> },
+    UnknownEvent { name: &'a str, known: &'a [&'a str], near: Option<&'a str> },
     /// An observation of what kirk dispatches.
     NotNatures(&'a str),
     /// An observation before the mission starts.
@@ -53,6 +53,8 @@ pub(crate) enum Problem<'a> {
     HeardTwice { name: &'a str, other: &'a str },
     /// An observation that the model rules out, or, in a rehearsal, that nothing could lead to.
     Impossible { name: &'a str, impossible: &'a Impossible, what_if: bool },
+    /// News that cannot be heard at that time, whatever the model says.
+    Unheard { name: &'a str, time: Time, why: Unheard, network: &'a Network, now: Time },
 }
 
 impl Problem<'_> {
@@ -128,10 +130,10 @@ impl Problem<'_> {
                         known.len() - 10
                     ),
                 };
-                observation(span, format!("there is no event `{name}`")).help(help)
+                observation(span, no_event(name, None)).help(help)
             }
             Problem::NotNatures(name) => {
-                observation(span, format!("`{name}` is not Nature's to decide: kirk dispatches it"))
+                observation(span, not_natures(name))
                     .help("only the ends of contingent durations are observed")
             }
             Problem::BeforeStart(name) => {
@@ -146,6 +148,10 @@ impl Problem<'_> {
                         false => format!("`{other}` and `{name}` are names of one event, and {once}"),
                     },
                 )
+            }
+            Problem::Unheard { name, time, why, network, now } => {
+                let (message, help) = unheard(name, time, why, network, now);
+                error(Code::ImpossibleObservation, message).help(help)
             }
             Problem::Impossible { name, impossible, what_if } => {
                 let Impossible { time, earliest, latest, .. } = impossible;
@@ -171,6 +177,36 @@ impl Problem<'_> {
             }
         }
     }
+}
+
+/// That nothing is called so, and what was probably meant.
+pub(crate) fn no_event(name: &str, near: Option<&str>) -> String {
+    let near = near.map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+    format!("there is no event `{name}`{near}")
+}
+
+fn unheard(name: &str, time: Time, why: Unheard, network: &Network, now: Time) -> (String, String) {
+    let earlier = "`--at` asks of an earlier time".to_string();
+    match why {
+        Unheard::Past => (format!("news of `{name}` at {time} s is in the past: it is {now} s"), earlier),
+        Unheard::NotBegun { start } => (
+            format!("`{name}` cannot be heard of at {time} s: it has not begun"),
+            format!("it begins with `{}`, which is not executed by then", network.label(start)),
+        ),
+        Unheard::Before(before) => {
+            (format!("`{name}` was heard at {before} s"), "news of an event arrives once".to_string())
+        }
+        Unheard::NotNatures => {
+            (not_natures(name), "only the ends of contingent durations are heard of".to_string())
+        }
+        Unheard::Over => {
+            (format!("`{name}` cannot be heard of at {time} s: nothing goes on by then"), earlier)
+        }
+    }
+}
+
+fn not_natures(name: &str) -> String {
+    format!("`{name}` is not Nature's to decide: kirk dispatches it")
 }
 
 fn observation(span: Span, message: String) -> Diagnostic {

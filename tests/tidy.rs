@@ -115,6 +115,23 @@ fn the_phases_of_the_compiler_report_what_they_know_and_no_sentences() {
     }
 }
 
+#[test]
+fn diagnostics_are_worded_in_one_place_of_each_crate() {
+    let mut files = Vec::new();
+    for folder in ["cli", "compiler/src", "lsp/src"] {
+        rust_files(Path::new(folder), &mut files);
+    }
+    let is_there = |file: &Path| file.iter().any(|part| part == "wording" || part == "wording.rs");
+    assert!(files.iter().filter(|file| is_there(file)).count() > 10);
+    for file in files.iter().filter(|file| !is_there(file) && !file.ends_with("diagnostic.rs")) {
+        let text = fs::read_to_string(file).unwrap();
+        for made in ["error", "warning", "note"] {
+            let made = format!("Diagnostic::{made}(");
+            assert!(!text.contains(&made), "{} may want to leave its words to wording", file.display());
+        }
+    }
+}
+
 fn rust_files(folder: &Path, files: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();

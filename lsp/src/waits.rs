@@ -20,10 +20,8 @@ pub(crate) struct Waits {
 pub(crate) fn waits(network: &Network, event: EventId) -> Waits {
     let merged = merge(network);
     let own = |name: &String| network.events()[event.index()].names.iter().any(|known| known.text == *name);
-    let names = |event: EventId| -> Vec<String> {
-        let written = merged.network.events()[event.index()].names.iter().filter(|name| !name.internal);
-        written.map(|name| name.text.clone()).collect()
-    };
+    let names =
+        |event: EventId| -> Vec<String> { merged.network.written(event).map(str::to_string).collect() };
     let here = merged.event_of[event.index()];
     let mut waits = Waits { together: names(here), after: Vec::new(), link: merged.network.link_of(here) };
     waits.together.retain(|name| !own(name));

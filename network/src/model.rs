@@ -232,10 +232,15 @@ impl Network {
         &self.events[event.index()].names[0].text
     }
 
+    /// The names of an event that a user wrote.
+    pub fn written(&self, event: EventId) -> impl Iterator<Item = &str> {
+        let names = self.events[event.index()].names.iter();
+        names.filter(|name| !name.internal).map(|name| name.text.as_str())
+    }
+
     /// The name to show for an event: the first a user wrote, else the first.
     pub fn label(&self, event: EventId) -> &str {
-        let names = &self.events[event.index()].names;
-        &names.iter().find(|name| !name.internal).unwrap_or(&names[0]).text
+        self.written(event).next().unwrap_or(self.id(event))
     }
 
     /// The event a name means, whichever of its names it is: as written, else in any case, else in the original's

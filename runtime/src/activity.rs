@@ -33,9 +33,9 @@ pub fn handovers(network: &Network, activities: Option<&[String]>, scope: Scope)
     let mut all = Vec::new();
     for event in network.event_ids() {
         let ours = network.link_of(event).is_none();
-        for name in network.events()[event.index()].names.iter().filter(|name| !name.internal) {
+        for name in network.written(event) {
             let activity = |suffix: &str| {
-                let activity = name.text.strip_suffix(suffix)?;
+                let activity = name.strip_suffix(suffix)?;
                 let known = match activities {
                     Some(activities) => activities.iter().any(|known| known == activity),
                     None => {
@@ -48,7 +48,7 @@ pub fn handovers(network: &Network, activities: Option<&[String]>, scope: Scope)
             let companion = activity(":start").map(|activity| format!("{activity}:end"));
             let also = scope == Scope::All && ours && (activities.is_none() || activity(":end").is_some());
             if companion.is_some() || also {
-                all.push(Handover { event, name: name.text.clone(), companion });
+                all.push(Handover { event, name: name.to_string(), companion });
             }
         }
     }

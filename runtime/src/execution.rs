@@ -8,6 +8,13 @@ use crate::input::Reason;
 /// The `format` of the record written and read here.
 pub const FORMAT: &str = "kirk-execution/1";
 
+/// True if a file looks like a record, of whatever version: it says so, in one of its first fields.
+pub fn is_record(bytes: &[u8]) -> bool {
+    let head = String::from_utf8_lossy(&bytes[..bytes.len().min(200)]).to_string();
+    let name = FORMAT.trim_end_matches(char::is_numeric);
+    head.trim_start_matches('\u{feff}').trim_start().starts_with('{') && head.contains(&format!("\"{name}"))
+}
+
 /// A finished (or failed) execution. All times are seconds after the origin, exact to a microsecond.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

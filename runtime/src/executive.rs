@@ -385,8 +385,8 @@ impl Executive {
     pub fn rows(&self, event: EventId) -> Vec<Row> {
         let happened = self.dispatcher.happened(event);
         let Some((_, row)) = row(&self.dispatcher, event, happened, None) else { return Vec::new() };
-        let names = self.network().events()[event.index()].names.iter().filter(|name| !name.internal);
-        names.map(|name| Row { event: name.text.clone(), ..row.clone() }).collect()
+        let names = self.network().written(event);
+        names.map(|name| Row { event: name.to_string(), ..row.clone() }).collect()
     }
 
     /// When the last thing happened, or surely had.

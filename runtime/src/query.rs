@@ -483,7 +483,7 @@ fn fix_unrecorded(network: &Network, knowledge: &mut Knowledge, now: Time) {
         }
     }
     let unwritten = |event: &EventId| {
-        network.events()[event.index()].names.iter().all(|name| name.internal)
+        network.written(*event).next().is_none()
             && network.link_of(*event).is_none()
             && knowledge.of(*event).fixed.is_none()
     };

@@ -126,10 +126,9 @@ impl Verifier<'_> {
             self.say(Some(&row.event), message);
         }
         for event in self.network.event_ids() {
-            let names = self.network.events()[event.index()].names.iter();
-            for name in names.filter(|name| !name.internal) {
-                if !rows.contains_key(&name.text.to_lowercase()) {
-                    self.say(Some(&name.text), format!("`{}` has no row", name.text));
+            for name in self.network.written(event) {
+                if !rows.contains_key(&name.to_lowercase()) {
+                    self.say(Some(name), format!("`{name}` has no row"));
                 }
             }
         }

@@ -183,39 +183,31 @@ impl<'a> Probe<'a> {
             }
             return yes;
         }
+        self.border(dial, no, yes, false).1
+    }
+
+    /// Brings two positions together of which the answer at the lower one is known, and at the upper one the other.
+    fn border(&mut self, dial: &Dial, mut lower: i64, mut upper: i64, is_yes: bool) -> (i64, i64) {
         let mut step = 1_000_000;
-        while yes - no > 1 {
-            let middle = no + ((yes - no) / 2).min(step);
-            if self.is_yes(dial, middle) {
-                yes = middle;
-            } else {
-                no = middle;
-            }
+        while upper - lower > 1 {
+            let middle = lower + ((upper - lower) / 2).min(step);
+            let end = if self.is_yes(dial, middle) == is_yes { &mut lower } else { &mut upper };
+            *end = middle;
             step = step.saturating_mul(2);
         }
-        yes
+        (lower, upper)
     }
 
     /// The last position at which the answer is "yes" on the way from one where it is "yes" to an easier one where it is "no".
     /// There is one at most where late news of chains makes the reduction too careful.
-    pub(crate) fn last_yes(&mut self, dial: &Dial, mut yes: i64, mut no: i64) -> i64 {
+    pub(crate) fn last_yes(&mut self, dial: &Dial, yes: i64, mut no: i64) -> i64 {
         if no == INFINITE {
             no = dial.finite.1;
             if self.is_yes(dial, no) {
                 return no;
             }
         }
-        let mut step = 1_000_000;
-        while no - yes > 1 {
-            let middle = yes + ((no - yes) / 2).min(step);
-            if self.is_yes(dial, middle) {
-                yes = middle;
-            } else {
-                no = middle;
-            }
-            step = step.saturating_mul(2);
-        }
-        yes
+        self.border(dial, yes, no, true).0
     }
 
     /// True if with the knob at a position a requirement of it makes two events one.

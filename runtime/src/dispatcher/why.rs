@@ -126,8 +126,7 @@ impl Dispatcher {
             Cause::Order { event } => (event, Duration::ZERO),
             _ => return None,
         };
-        let names = &self.network.events()[event.index()].names;
-        if event == self.network.origin() || names.iter().any(|name| !name.internal) {
+        if event == self.network.origin() || self.network.written(event).next().is_some() {
             return None;
         }
         match self.cause_in_full(event)? {

@@ -116,11 +116,6 @@ impl Problems {
         self.is_muted(form)
     }
 
-    /// True if definitions may have been lost.
-    pub fn has_lost_definitions(&self) -> bool {
-        self.lost
-    }
-
     /// True if anything reported so far was an error.
     pub fn has_errors(&self) -> bool {
         self.errors > 0

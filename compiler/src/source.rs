@@ -63,11 +63,6 @@ impl LineIndex {
         let before = text.get(self.starts[line] as usize..(offset as usize).min(text.len())).unwrap_or("");
         (line + 1, before.chars().count() + 1)
     }
-
-    /// The number of lines.
-    pub fn line_count(&self) -> usize {
-        self.starts.len()
-    }
 }
 
 #[cfg(test)]
@@ -83,6 +78,5 @@ mod tests {
         assert_eq!(index.line_column(text, 5), (2, 2));
         assert_eq!(index.line_column(text, 7), (3, 1));
         assert_eq!(index.line_column(text, 700), (3, 1));
-        assert_eq!(index.line_count(), 3);
     }
 }

@@ -12,7 +12,6 @@ use kirk_compiler::{Code, Diagnostic, Front, Options, Severity, Source, Span, Sy
 use kirk_compiler::{Model, Work};
 
 use crate::lines::Lines;
-use crate::rename::edited;
 use crate::wording::Problem;
 
 /// What is known of a text before anything is unfolded.
@@ -158,6 +157,21 @@ pub fn analyse_among(text: String, companions: &Companions) -> (Analysis, Unjudg
     let analysis =
         Analysis { sources, lines, others, forms, program, symbols, diagnostics, broken, places, order };
     (analysis, unjudged)
+}
+
+/// The text with edits that do not overlap.
+pub fn edited(text: &str, edits: &[(Span, String)]) -> String {
+    let mut edits: Vec<&(Span, String)> = edits.iter().collect();
+    edits.sort_by_key(|(span, _)| *span);
+    let mut after = String::with_capacity(text.len());
+    let mut at = 0;
+    for (span, new) in edits {
+        after.push_str(&text[at..span.start as usize]);
+        after.push_str(new);
+        at = span.end as usize;
+    }
+    after.push_str(&text[at..]);
+    after
 }
 
 /// The first error of each other file, where that is named: nothing is judged before it is put right.

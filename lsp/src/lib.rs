@@ -47,7 +47,7 @@ mod waits;
 mod wording;
 
 pub use actions::{Action, actions};
-pub use analysis::{Analysis, Companions, Unjudged, analyse, analyse_among};
+pub use analysis::{Analysis, Companions, Unjudged, analyse, analyse_among, edited};
 pub use companions::ReadFile;
 pub use completion::{Completion, CompletionKind, completion, filled_in};
 pub use definition::{definition, references};
@@ -59,7 +59,7 @@ pub use judged::{Judged, Judgement, Occurrence, judge};
 pub use layout::{layout, layout_within};
 pub use lines::{Encoding, Lines};
 pub use outline::{Outline, OutlineKind, outline};
-pub use rename::{edited, prepare_rename, rename};
+pub use rename::{prepare_rename, rename};
 pub use server::serve;
 pub use signature::{Signature, signature};
 pub use view::{Shift, View};

@@ -95,21 +95,6 @@ fn renameable(analysis: &Analysis, symbol: &Symbol) -> Result<(), String> {
     }
 }
 
-/// The text with edits that do not overlap.
-pub fn edited(text: &str, edits: &[(Span, String)]) -> String {
-    let mut edits: Vec<&(Span, String)> = edits.iter().collect();
-    edits.sort_by_key(|(span, _)| *span);
-    let mut after = String::with_capacity(text.len());
-    let mut at = 0;
-    for (span, new) in edits {
-        after.push_str(&text[at..span.start as usize]);
-        after.push_str(new);
-        at = span.end as usize;
-    }
-    after.push_str(&text[at..]);
-    after
-}
-
 /// The first place after a renaming that belongs together with others than before.
 fn difference(before: &Symbols, after: &Symbols) -> Option<Mention> {
     let numbered = |symbols: &Symbols| {

@@ -6,7 +6,6 @@
 
 use std::collections::BTreeMap;
 
-use super::write::json_text;
 use crate::model::{EventId, Requirement};
 use crate::time::{Bound, Duration};
 
@@ -62,4 +61,17 @@ pub(super) fn tightest(requirements: &[Requirement]) -> BTreeMap<(EventId, Event
         *known = weight.min(*known);
     }
     edges
+}
+
+/// JSON in which every character is one that XML allows.
+pub(super) fn json_text(value: &impl serde::Serialize) -> String {
+    let json = serde_json::to_string(value).unwrap_or_default();
+    json.chars()
+        .map(|char| if is_xml(char) { char.to_string() } else { format!("\\u{:04x}", char as u32) })
+        .collect()
+}
+
+/// What may be in XML.
+pub(super) fn is_xml(char: char) -> bool {
+    matches!(char, '\t' | '\n' | '\r') || (char >= ' ' && !matches!(char, '\u{fffe}' | '\u{ffff}'))
 }

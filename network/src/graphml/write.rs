@@ -5,7 +5,7 @@ use std::fmt::{self, Write};
 
 use quick_xml::escape::escape;
 
-use super::exact;
+use super::exact::{self, is_xml};
 use crate::model::{Delay, EventId, Network, Requirement};
 use crate::plain::{Intervals, unquoted};
 use crate::time::Duration;
@@ -138,10 +138,10 @@ impl<'a> Writer<'a> {
                 event.names.iter().filter(|name| name.internal).map(|name| name.text.as_str()).collect();
             let mut data = String::new();
             if names != [id.as_str()] {
-                data.push_str(&datum("Names", &json_text(&names)));
+                data.push_str(&datum("Names", &exact::json_text(&names)));
             }
             if !internal.is_empty() {
-                data.push_str(&datum("Internal", &json_text(&internal)));
+                data.push_str(&datum("Internal", &exact::json_text(&internal)));
             }
             line(&mut out, format_args!("<node id=\"{}\">{data}</node>", attribute(id)));
         }
@@ -221,14 +221,6 @@ fn attribute(text: &str) -> String {
     escape(text).replace('\t', "&#9;").replace('\n', "&#10;").replace('\r', "&#13;")
 }
 
-/// JSON in which every character is one that XML allows.
-pub(super) fn json_text(value: &impl serde::Serialize) -> String {
-    let json = serde_json::to_string(value).unwrap_or_default();
-    json.chars()
-        .map(|char| if is_xml(char) { char.to_string() } else { format!("\\u{:04x}", char as u32) })
-        .collect()
-}
-
 /// This id, or one like it that is not taken.
 fn unused(taken: &mut BTreeSet<String>, id: String) -> String {
     let found = (1..)
@@ -237,8 +229,4 @@ fn unused(taken: &mut BTreeSet<String>, id: String) -> String {
         .unwrap_or_default();
     taken.insert(found.clone());
     found
-}
-
-fn is_xml(char: char) -> bool {
-    matches!(char, '\t' | '\n' | '\r') || (char >= ' ' && !matches!(char, '\u{fffe}' | '\u{ffff}'))
 }

@@ -13,7 +13,7 @@ pub(crate) use judge::{Check, CheckFormat, Compile, Delays, Stage, StageFormat, 
 pub(crate) use query::Query;
 pub(crate) use repair::{Prefer, RepairOf, SlackOf};
 pub(crate) use run::{
-    CompanionName, DriverEvents, DriverStarts, Live, Nature, Replay, Resume, Run, ScreenWhen, Show,
+    CompanionName, DriverEvents, DriverStarts, Links, Live, Nature, Replay, Resume, Run, ScreenWhen, Show,
     StrategyName,
 };
 

@@ -17,12 +17,19 @@ use crate::input::{Loaded, load_all};
 use crate::json::line;
 use crate::news::treatment;
 use crate::observations::Observations;
-use crate::output::{Status, eprint, print};
+use crate::output::{Status, complain, eprint, print};
 use crate::report::Reporter;
+use crate::team;
 
 pub(crate) fn run(arguments: &Run, common: &Common) -> io::Result<Status> {
     let mut input = load_all(&arguments.files, &arguments.selection);
-    input.for_one_alone("`kirk run`");
+    if input.team().is_some() {
+        return team::simulate::run(arguments, common, input);
+    }
+    if arguments.links.is_some() && input.network.is_some() {
+        complain("`--links` is about the links of a team, and this mission has no `define-team`");
+        return Ok(Status::Wrong);
+    }
     let plan = plan_of(&mut input);
     let reported = |diagnostic: &Diagnostic| match arguments.show.format {
         // Nothing but the execution goes to standard output, and nobody looks at notes beside JSON.

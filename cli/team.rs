@@ -1,5 +1,8 @@
 //! The mission of a team: the verdict on it, for people and as part of `kirk-check/1`.
 
+pub(crate) mod simulate;
+pub(crate) mod verify;
+
 use std::collections::BTreeMap;
 use std::time::Instant;
 

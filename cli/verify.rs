@@ -14,6 +14,7 @@ use crate::input::{Bytes, at_most, load_all, read, shown, without_mark};
 use crate::json::line;
 use crate::output::{Status, complain, print, print_line};
 use crate::report::Reporter;
+use crate::team;
 use crate::wording::Problem;
 
 /// Records are written by machines.
@@ -24,7 +25,11 @@ pub(crate) fn verify(arguments: &Verify, common: &Common) -> io::Result<Status> 
         complain("the execution and the mission cannot both be standard input");
         return Ok(Status::Wrong);
     }
-    let execution = match read_execution(&arguments.execution) {
+    let bytes = read(&arguments.execution, LARGEST_RECORD);
+    if let Some(bytes) = bytes.as_ref().ok().filter(|bytes| team::verify::is_record(bytes)) {
+        return team::verify::verify(arguments, common, bytes);
+    }
+    let execution = match execution_of(&arguments.execution, bytes) {
         Ok(execution) => Some(execution),
         Err(wrong) => {
             let (source, diagnostic) = *wrong;
@@ -40,7 +45,6 @@ pub(crate) fn verify(arguments: &Verify, common: &Common) -> io::Result<Status> 
     let input = load_all(&arguments.files, &selection);
     Reporter::new(&input.sources).show(&input.diagnostics, common)?;
     let (Some(execution), Some(network)) = (execution, &input.network) else { return Ok(Status::Wrong) };
-    let file = arguments.files.join(" ");
     let mut violations = check(network, &execution);
     if !input.may_be(&execution.program, &selection) {
         let (theirs, ours) = (&execution.program, input.program(&selection));
@@ -48,6 +52,17 @@ pub(crate) fn verify(arguments: &Verify, common: &Common) -> io::Result<Status> 
         violations.insert(0, Violation { event: None, message });
     }
     let lucky = if violations.is_empty() { lucky(network, &execution) } else { Vec::new() };
+    conclude(arguments, common, &violations, &lucky)
+}
+
+/// Says what was found.
+pub(crate) fn conclude(
+    arguments: &Verify,
+    common: &Common,
+    violations: &[Violation],
+    lucky: &[Violation],
+) -> io::Result<Status> {
+    let file = arguments.files.join(" ");
     match arguments.format {
         TextOrJson::Json => {
             let document = VerifyJson {
@@ -61,10 +76,10 @@ pub(crate) fn verify(arguments: &Verify, common: &Common) -> io::Result<Status> 
             print(&line(&document)?)?;
         }
         TextOrJson::Text => {
-            for violation in &violations {
+            for violation in violations {
                 print_line(&format!("violation: {}", violation.message))?;
             }
-            for Violation { message, .. } in &lucky {
+            for Violation { message, .. } in lucky {
                 print_line(&format!(
                     "note: only as it truly happened; by what was heard Nature could have broken this: {message}"
                 ))?;
@@ -82,12 +97,7 @@ pub(crate) fn verify(arguments: &Verify, common: &Common) -> io::Result<Status> 
     Ok(if violations.is_empty() { Status::Yes } else { Status::No })
 }
 
-/// Reads a record, or what a journal leads to.
-pub(crate) fn read_execution(file: &str) -> Result<Execution, Box<(Source, Diagnostic)>> {
-    execution_of(file, read(file, LARGEST_RECORD))
-}
-
-/// The same where the file was read already.
+/// Reads a record, or what a journal leads to, from the bytes of a file.
 pub(crate) fn execution_of(file: &str, bytes: Bytes) -> Result<Execution, Box<(Source, Diagnostic)>> {
     let wrong = |text: &str, problem: Problem<'_>, at: usize| {
         Box::new((Source::new(shown(file), text), problem.at(Span::new(0, at, at))))

@@ -203,3 +203,102 @@ fn the_network_of_a_team_is_no_network_of_one_alone() {
     assert_eq!(output.status.code(), Some(1));
     assert!(stderr(&output).contains("error[K0602]"), "{}", stderr(&output));
 }
+
+#[test]
+fn the_whole_team_is_simulated_and_what_happened_is_verified() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = folder.path().join("record.json");
+    let record = record.to_str().unwrap();
+    let drill = file("drill");
+    let verify = || kirk(&["verify", record, &drill]);
+    for nature in ["upper", "lower", "random"] {
+        for links in ["longest", "shortest", "random", "lossy"] {
+            for (strategy, seed) in [("buffer", "1"), ("optimistic", "2")] {
+                let options = [
+                    "--nature",
+                    nature,
+                    "--links",
+                    links,
+                    "--strategy",
+                    strategy,
+                    "--seed",
+                    seed,
+                    "--format",
+                    "json",
+                ];
+                let run = kirk(&[&["run", &drill, "--simulate"], &options[..]].concat());
+                assert_eq!(run.status.code(), Some(0), "{options:?}: {}", stderr(&run));
+                std::fs::write(record, &run.stdout).unwrap();
+                let verified = verify();
+                assert_eq!(verified.status.code(), Some(0), "{options:?}: {}", stdout(&verified));
+            }
+        }
+    }
+    // What is not so is found out, in true time: a start too early, an end of Nature's too late, and news too early and too late.
+    let original: Value = serde_json::from_slice(&std::fs::read(record).unwrap()).unwrap();
+    let row = |name: &str| {
+        original["rows"].as_array().unwrap().iter().position(|row| row["event"] == name).unwrap()
+    };
+    let number = |value: &Value| value.as_f64().unwrap();
+    let mut said = Vec::new();
+    for (event, agent, by) in [
+        ("drill:start", None, -20.0),
+        ("drill:end", None, 20.0),
+        ("downlink:end", Some("robot"), -20.0),
+        ("downlink:end", Some("robot"), 20.0),
+    ] {
+        let mut changed = original.clone();
+        let at = match agent {
+            None => &mut changed["rows"][row(event)]["happened"],
+            Some(agent) => &mut changed["rows"][row(event)]["heard"][agent]["at"],
+        };
+        *at = Value::from((number(at) + by).round());
+        std::fs::write(record, changed.to_string()).unwrap();
+        let verified = verify();
+        assert_eq!(verified.status.code(), Some(1), "{event} {agent:?} {by}");
+        said.push(stdout(&verified).lines().next().unwrap().to_string());
+    }
+    assert!(said[0].contains("`drill:start`") && said[1].contains("`drill:end`"), "{said:?}");
+    assert!(
+        said[2].contains("robot heard of `downlink:end`") && said[2].contains("cannot before"),
+        "{said:?}"
+    );
+    assert!(said[3].contains("robot heard of `downlink:end` only at"), "{said:?}");
+    // Of a team's record only a team's mission knows whether it is kept.
+    let alone = kirk(&["verify", record, "examples/rmpl/robot.rmpl"]);
+    assert_eq!(alone.status.code(), Some(2));
+    std::fs::write(record, r#"{"format": "kirk-team-execution/1", "rows": 3}"#).unwrap();
+    assert_eq!(verify().status.code(), Some(2));
+}
+
+#[test]
+fn the_timetable_says_who_knows_what_when() {
+    let mut shown = String::new();
+    for options in [&["--nature", "lower"][..], &["--nature", "random", "--seed", "3", "--links", "lossy"]] {
+        let output = kirk(&[&["run", &file("drill"), "--simulate", "--quiet"], options].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        shown.push_str(&format!("$ {}\n{}\n", options.join(" "), stdout(&output)));
+    }
+    insta::assert_snapshot!(shown);
+}
+
+#[test]
+fn a_team_is_run_whole_or_not_at_all() {
+    let drill = file("drill");
+    for (arguments, says) in [
+        (vec!["run", &drill], "`--simulate` executes all of its agents"),
+        (vec!["run", &drill, "--simulate", "--observe", "drill:end@30"], "`--observe` is of one executive"),
+        (vec!["run", &drill, "--simulate", "--why"], "`--why` is of one executive"),
+        (vec!["run", "examples/rmpl/robot.rmpl", "--simulate", "--links", "random"], "no `define-team`"),
+    ] {
+        let output = kirk(&arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(stderr(&output).contains(says), "{arguments:?}: {}", stderr(&output));
+    }
+    for name in ["not-found", "no"] {
+        let output = kirk(&["run", &file(name), "--simulate", "--format", "json"]);
+        assert_eq!(output.status.code(), Some(1));
+        let record: Value = serde_json::from_str(&stdout(&output)).unwrap();
+        assert_eq!(record["failure"]["reason"], "not-controllable");
+    }
+}

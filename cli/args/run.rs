@@ -33,7 +33,12 @@ pub(crate) struct Run {
     /// How Nature chooses durations and delays where the observations leave a choice.
     #[arg(long, value_enum, default_value_t = Nature::Upper, requires = "simulate", help_heading = "Simulation")]
     pub(crate) nature: Nature,
-    /// The seed of `--nature random`.
+    /// Of a team: what the links between its agents do; a lost message comes again, by the latest that its link allows.
+    ///
+    /// [default: longest]
+    #[arg(long, value_enum, requires = "simulate", help_heading = "Simulation")]
+    pub(crate) links: Option<Links>,
+    /// The seed of `--nature random`, and of `--links`.
     #[arg(long, default_value_t = 0, value_name = "N", requires = "simulate", help_heading = "Simulation")]
     pub(crate) seed: u64,
     /// What to do with news that says more than the plan assumed.
@@ -282,6 +287,18 @@ pub(crate) enum Nature {
     Lower,
     /// Anything possible.
     Random,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Links {
+    /// Every message as late as it can be, none over links that may lose it.
+    Longest,
+    /// Every message as soon as it can be.
+    Shortest,
+    /// Anything possible.
+    Random,
+    /// The same, and of 100 messages 30 are lost at first and 20 come twice.
+    Lossy,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

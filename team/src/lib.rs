@@ -36,6 +36,7 @@
 //! | share out | `views` | whole, and what promises are measured from | views without numbers |
 //! | find | `search`, `cuts` | views | promises such that all views are controllable |
 //! | execute | [`Ready`] | views, Nature, the weather on the links | when each event happened, and who heard of it when |
+//! | record | [`mod@record`] | what happened | `kirk-team-execution/1`, for programs and the verifier |
 //! | verify | [`verify()`] | what happened | what of the team's network did not hold |
 //!
 //! # Words
@@ -54,6 +55,7 @@
 pub mod mission;
 pub mod model;
 pub mod reach;
+pub mod record;
 #[doc(hidden)]
 pub mod rules;
 
@@ -74,8 +76,9 @@ pub use find::{Agreement, Options, Verdict, View, find};
 pub use mission::Mission;
 pub use model::{AgentId, Link, Place, Team, TeamError};
 pub use promise::Promise;
+pub use record::Record;
 pub use rules::Rules;
 pub use shortage::{Cause, Change, Member, NotFound, Remedy, remedies};
 pub use simulate::{Ready, Simulation, TeamExecution, Trouble};
-pub use verify::{Late, Violation, late_news, verify};
+pub use verify::{Late, Violation, late_news, verify, verify_truth};
 pub use weather::{Mood, Partition, Weather};

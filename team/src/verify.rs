@@ -44,7 +44,23 @@ pub struct Late {
 /// Checks what truly happened. An empty list means that all is well.
 pub fn verify(team: &Team, agreement: &Agreement, execution: &TeamExecution) -> Vec<Violation> {
     let network = team.network();
+    let mut violations = verify_truth(team, &execution.truth);
     let truth = |event: EventId| execution.truth[event.index()];
+    let named = |event: EventId| network.find(agreement.network.id(event)).and_then(truth);
+    for (index, promise) in agreement.promises.iter().enumerate() {
+        let (Some(base), Some(event)) = (named(promise.base), named(promise.event)) else { continue };
+        let length = event.saturating_since(base);
+        if length < promise.low || length > promise.high {
+            violations.push(Violation::Promise(index, length));
+        }
+    }
+    violations
+}
+
+/// The same of all but the promises: by event of the team's network when it happened.
+pub fn verify_truth(team: &Team, happened: &[Option<Time>]) -> Vec<Violation> {
+    let network = team.network();
+    let truth = |event: EventId| happened[event.index()];
     let mut violations = Vec::new();
     for event in network.event_ids() {
         match truth(event) {
@@ -67,16 +83,8 @@ pub fn verify(team: &Team, agreement: &Agreement, execution: &TeamExecution) -> 
             violations.push(Violation::Link(index, length));
         }
     }
-    if !have_moments(team, execution) {
+    if !have_moments(team, happened) {
         violations.push(Violation::Joints);
-    }
-    let named = |event: EventId| network.find(agreement.network.id(event)).and_then(truth);
-    for (index, promise) in agreement.promises.iter().enumerate() {
-        let (Some(base), Some(event)) = (named(promise.base), named(promise.event)) else { continue };
-        let length = event.saturating_since(base);
-        if length < promise.low || length > promise.high {
-            violations.push(Violation::Promise(index, length));
-        }
     }
     violations
 }
@@ -86,12 +94,12 @@ fn within(length: Duration, lower: Bound, upper: Bound) -> bool {
 }
 
 /// True if the events that nobody executes could have been at some moments: no negative cycle, with all others where they were.
-fn have_moments(team: &Team, execution: &TeamExecution) -> bool {
+fn have_moments(team: &Team, happened: &[Option<Time>]) -> bool {
     let network = team.network();
     let mut edges: Vec<(usize, usize, i64)> = Vec::new();
     let origin = network.origin().index();
     // An end that is known is the origin, so much later.
-    let place = |event: EventId| match execution.truth[event.index()] {
+    let place = |event: EventId| match happened[event.index()] {
         Some(at) => (origin, at.as_micros()),
         None => (event.index(), 0),
     };

@@ -14,7 +14,7 @@ fn every_example_is_checked_compiled_executed_and_verified() {
         .filter(|path| path.ends_with(".rmpl"))
         .collect();
     files.sort();
-    assert!(files.len() >= 13, "{files:?}");
+    assert!(files.len() >= 15, "{files:?}");
     for file in &files {
         let name = file.rsplit('/').next().unwrap().trim_end_matches(".rmpl");
         let mut shown = String::new();

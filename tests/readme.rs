@@ -19,5 +19,5 @@ fn the_commands_of_the_readme_print_what_it_says() {
         assert_eq!(printed.trim_end(), shown.trim_end(), "{command}");
         tried += 1;
     }
-    assert_eq!(tried, 3);
+    assert_eq!(tried, 4);
 }

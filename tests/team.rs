@@ -302,3 +302,96 @@ fn a_team_is_run_whole_or_not_at_all() {
         assert_eq!(record["failure"]["reason"], "not-controllable");
     }
 }
+
+/// When each of these events is decided in the view of an agent that hears of these things then, and how.
+fn decided(mission: &str, agent: &str, heard: &[&str], events: &[&str]) -> Vec<String> {
+    let folder = tempfile::tempdir().unwrap();
+    let view = folder.path().join("view.json");
+    let view = view.to_str().unwrap();
+    let compiled = kirk(&["compile", mission, "--agent", agent, "--format", "json", "-o", view, "--quiet"]);
+    assert_eq!(compiled.status.code(), Some(0), "{}", stderr(&compiled));
+    let mut arguments = vec!["run", view, "--simulate", "--format", "json"];
+    arguments.extend(heard.iter().flat_map(|heard| ["--observe", heard]));
+    let record = document(&arguments);
+    let row = |name: &&str| {
+        let rows = record["rows"].as_array().unwrap();
+        let row = rows.iter().find(|row| row["event"] == *name).unwrap_or_else(|| panic!("{name}"));
+        format!("{} {}", row["time"], row["how"].as_str().unwrap())
+    };
+    events.iter().map(row).collect()
+}
+
+/// The thesis' section 7.3.2: what was programmed twice by hand there, from one source. Tables 7.5 to 7.8 on every decision.
+#[test]
+fn both_demonstrations_of_the_thesis_come_from_one_source() {
+    let mission = "examples/rmpl/lunar-team.rmpl";
+    let (downlinked, drill, drilled) =
+        ("human-downlink-science:end", "robot-drilling:start", "robot-drilling:end");
+    let by_astronaut = |heard: &[&str]| {
+        let closeout = ["human-closeout:start", "human-closeout:end"];
+        decided(mission, "astronaut", heard, &[downlinked, drill, drilled, closeout[0], closeout[1]])
+    };
+    let by_robot = |heard: &[&str]| {
+        decided(
+            mission,
+            "robot",
+            heard,
+            &[downlinked, drill, drilled, "robot-poweroff:start", "robot-poweroff:end"],
+        )
+    };
+    let heard = ["human-downlink-science:end@16", "robot-drilling:start@23", "robot-drilling:end@49"];
+    let first = ["16 observed", "23 observed", "49 observed", "49 dispatched", "59 dispatched"];
+    assert_eq!(by_astronaut(&heard), first);
+    let heard = ["human-downlink-science:end@22", "robot-drilling:end@46"];
+    let first = ["22 observed", "22 dispatched", "46 observed", "46 dispatched", "56 dispatched"];
+    assert_eq!(by_robot(&heard), first);
+    // In the second nothing is heard from the other.
+    let second = ["30 observed", "45 imagined", "71 imagined", "71 dispatched", "81 dispatched"];
+    assert_eq!(by_astronaut(&["human-downlink-science:end@30"]), second);
+    let second = ["35 imagined", "35 dispatched", "60 observed", "60 dispatched", "70 dispatched"];
+    assert_eq!(by_robot(&["robot-drilling:end@60"]), second);
+}
+
+/// The two teams of drones: one verdict from one source, whatever the links do.
+#[test]
+fn the_second_team_of_drones_never_starts_before_the_first_has_landed() {
+    let source = std::fs::read_to_string("examples/rmpl/two-teams.rmpl").unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("teams.rmpl");
+    let file = path.to_str().unwrap();
+    let mut waits = Vec::new();
+    for delays in ["30 :max-delay 40", "5 :max-delay 5", "0 :max-delay 130", "30 :max-delay :infinity"] {
+        let text = source.replace(":min-delay 30 :max-delay 40", &format!(":min-delay {delays}"));
+        assert!(text.contains(&format!(":min-delay {delays}")));
+        std::fs::write(&path, text).unwrap();
+        let check = document(&["check", "--format", "json", file]);
+        assert_eq!(check["team"]["verdict"], "yes", "{delays}");
+        for nature in ["lower", "upper", "random"] {
+            for links in ["longest", "shortest", "lossy"] {
+                for seed in ["1", "2", "3"] {
+                    let options = ["--nature", nature, "--links", links, "--seed", seed, "--format", "json"];
+                    let record = document(&[&["run", file, "--simulate"], &options[..]].concat());
+                    assert_eq!(record["outcome"], "completed", "{delays} {options:?}");
+                    let rows = record["rows"].as_array().unwrap();
+                    let at = |name: &str| {
+                        rows.iter().find(|row| row["event"] == name).unwrap()["happened"].as_f64().unwrap()
+                    };
+                    let landed = at("land:end").max(at("land#2:end"));
+                    let started = at("fly#3:start").min(at("fly#4:start"));
+                    assert!(started >= landed, "{delays} {options:?}: {started} before {landed}");
+                    if (nature, links, seed) == ("lower", "longest", "1") {
+                        waits.push(started - landed);
+                    }
+                }
+            }
+        }
+    }
+    // Team two starts when it hears of it; if it may never hear, by the time at which team one has promised to have landed.
+    assert_eq!(waits, [40.0, 5.0, 130.0, 599.0]);
+    std::fs::write(&path, source.replace("2400", "1261")).unwrap();
+    let check = document(&["check", "--format", "json", file]);
+    assert_eq!(
+        (&check["team"]["verdict"], &check["conflicts"][0]["total"]),
+        (&"no".into(), &Value::from(-1))
+    );
+}

@@ -169,7 +169,15 @@ impl Record {
                 }
             }
         }
-        found.extend(verify_truth(team, &execution.truth).iter().map(|violation| violation.sentence(team)));
+        // Events that no user wrote need not be in a record; there has to be a moment for each.
+        let is_known = |violation: &&Violation| match violation {
+            Violation::Never(event) => {
+                network.events()[event.index()].names.iter().any(|name| !name.internal)
+            }
+            _ => true,
+        };
+        let kept = verify_truth(team, &execution.truth);
+        found.extend(kept.iter().filter(is_known).map(|violation| violation.sentence(team)));
         found.extend(late_news(team, &execution).iter().map(|late| late.sentence(team)));
         found
     }

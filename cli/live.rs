@@ -145,8 +145,7 @@ impl Screen {
 
     /// Draws what has changed, if anything has and the terminal takes it.
     fn show(&mut self, state: &mut State, now: Time) -> io::Result<()> {
-        let (size, second) =
-            (self.terminal.size().unwrap_or(self.size), now.as_micros().div_euclid(1_000_000));
+        let (size, second) = (self.terminal.size().unwrap_or(self.size), now.second());
         let changed = state.changed || second != self.second || size != self.size || self.stale;
         if !changed || !self.terminal.is_moving() {
             return Ok(());

@@ -101,7 +101,7 @@ impl View<'_> {
             Outcome::Failed => "failed",
             Outcome::BrokenModel => "broken model",
         };
-        let time = format!("{} s", self.now.as_micros().div_euclid(1_000_000));
+        let time = format!("{} s", self.now.second());
         let help = if wide < ROOMY { "? help" } else { "? help   Ctrl-C stop" };
         let name =
             cut(&snapshot.program, wide.saturating_sub(time.len() + state.len() + help.len() + 7).max(6));

@@ -95,14 +95,11 @@ pub(crate) fn count(expression: &Expression, variables: &[Value]) -> Result<u64,
     if number < Duration::ZERO {
         return bad(BadCount::Negative);
     }
-    if number.as_micros() % 1_000_000 != 0 {
-        return bad(BadCount::NotWhole);
+    match number.whole_seconds().map(i64::unsigned_abs) {
+        None => bad(BadCount::NotWhole),
+        Some(times) if times > MAX_COUNT => bad(BadCount::TooMany),
+        Some(times) => Ok(times),
     }
-    let times = (number.as_micros() / 1_000_000).unsigned_abs();
-    if times > MAX_COUNT {
-        return bad(BadCount::TooMany);
-    }
-    Ok(times)
 }
 
 fn number(expression: &Expression, variables: &[Value], role: Role) -> Result<Duration, Wrong> {

@@ -73,6 +73,11 @@ impl Time {
         Time(duration.0)
     }
 
+    /// The seconds that are over since the origin.
+    pub const fn second(self) -> i64 {
+        self.0.div_euclid(MICROS_PER_SECOND)
+    }
+
     /// How long after the origin this is.
     pub const fn since_origin(self) -> Duration {
         Duration(self.0)
@@ -129,6 +134,11 @@ impl Duration {
     /// A duration of whole seconds.
     pub const fn from_secs(seconds: i64) -> Duration {
         Duration(seconds * MICROS_PER_SECOND)
+    }
+
+    /// How many seconds it is, if it is whole ones.
+    pub const fn whole_seconds(self) -> Option<i64> {
+        if self.0 % MICROS_PER_SECOND == 0 { Some(self.0 / MICROS_PER_SECOND) } else { None }
     }
 
     /// The number of microseconds.

@@ -219,7 +219,7 @@ fn fits(kind: &Type, value: &Value) -> bool {
             "null" => value.kind == ValueKind::Nil,
             "string" | "simple-string" => matches!(value.kind, ValueKind::Text(_)),
             "integer" | "fixnum" => {
-                matches!(value.kind, ValueKind::Number(number) if number.as_micros() % 1_000_000 == 0)
+                matches!(value.kind, ValueKind::Number(number) if number.whole_seconds().is_some())
             }
             "number" | "real" | "rational" | "float" | "single-float" | "double-float" => {
                 matches!(value.kind, ValueKind::Number(_))

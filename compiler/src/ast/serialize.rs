@@ -57,10 +57,8 @@ impl Serialize for ValueKind {
 
 /// Seconds as a number: whole ones without a fraction. Exact below 2^53 microseconds, as JSON readers are.
 pub(crate) fn seconds<S: Serializer>(duration: &Duration, serializer: S) -> Result<S::Ok, S::Error> {
-    let micros = duration.as_micros();
-    if micros % 1_000_000 == 0 {
-        serializer.serialize_i64(micros / 1_000_000)
-    } else {
-        serializer.serialize_f64(micros as f64 / 1e6)
+    match duration.whole_seconds() {
+        Some(seconds) => serializer.serialize_i64(seconds),
+        None => serializer.serialize_f64(duration.as_micros() as f64 / 1e6),
     }
 }

@@ -4,7 +4,7 @@ use super::Page;
 
 pub(super) const NOT_A_NUMBER: Page = Page {
     meaning: "A bound is a number of seconds (`15`, `1.5`, `1/2`, `1e3`), a number with a unit (`(minutes 5)`), a name from
-`defparameter`, a parameter of the program, or `:infinity` for an upper bound. Kirk does not calculate.",
+`defparameter`, a parameter of the program, a calculation with these (`(+ *wait* 5)`), or `:infinity` for an upper bound.",
     wrong: "(define-control-program a () (declare (primitive) (duration (simple :upper-bound 5min))))",
     right: "(define-control-program a () (declare (primitive) (duration (simple :upper-bound (minutes 5)))))",
 };

@@ -16,7 +16,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use kirk_executive::{Driver, Ended, Happening, Http, Mission, Options, begin};
+use kirk_executive::{Assignment, Driver, Ended, Happening, Http, Options, begin};
 use kirk_network::{EventId, Time, json};
 use kirk_runtime::nature::Nature;
 use kirk_runtime::{How, Outcome, Plan, Scope, Speed, Temper, handovers};
@@ -70,7 +70,7 @@ fn early(events: u32, journal: bool) -> Ended {
     let plan = Plan::new(&network).unwrap();
     let handovers = handovers(plan.network(), None, Scope::All);
     let merged = plan.network().clone();
-    let mission = Mission { program: "early".into(), network, plan, handovers };
+    let mission = Assignment { program: "early".into(), network, plan, handovers };
     let options = Options {
         driver: Some(Driver::Stdio(CONFIRM.into())),
         speed: Speed::try_from(SPEED).unwrap(),
@@ -142,7 +142,7 @@ fn execute(journal: bool, flood: bool) -> (Ended, u64) {
     let network = json::read(&network()).unwrap();
     let plan = Plan::new(&network).unwrap();
     let handovers = handovers(plan.network(), None, Scope::Starts);
-    let mission = Mission { program: "lateness".into(), network, plan, handovers };
+    let mission = Assignment { program: "lateness".into(), network, plan, handovers };
     let options = Options {
         driver: Some(Driver::Stdio(CONFIRM.into())),
         http: Some(Http { bind: "127.0.0.1".into(), port: 0, token_file: None }),

@@ -5,7 +5,9 @@ use std::sync::mpsc::{Receiver, channel};
 
 use jiff::Timestamp;
 use kirk_compiler::episode::{Episode, Kind};
-use kirk_executive::{Driver, Ended, Http, Mission, Options, Ready, Resumption, Said, Screen, Zero, begin};
+use kirk_executive::{
+    Assignment, Driver, Ended, Http, Options, Ready, Resumption, Said, Screen, Zero, begin,
+};
 use kirk_network::Duration;
 use kirk_runtime::{
     Dispatcher, Execution, Outcome, Plan, Row, Scope, handovers, leave_out_natures, merge_companions,
@@ -52,7 +54,7 @@ pub(crate) fn execute(arguments: &Run, common: &Common, input: &Loaded, plan: Pl
         );
     }
     let program = input.program(&arguments.selection);
-    let mission = Mission { program, network: network.clone(), plan, handovers };
+    let mission = Assignment { program, network: network.clone(), plan, handovers };
     let screen = match has_screen(options.screen) {
         Ok(screen) => screen,
         Err(message) => return wrong(&message),

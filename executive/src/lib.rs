@@ -1,7 +1,7 @@
 //! Executes a mission in real time: the shell around [`kirk_runtime::Executive`], with a clock, a driver, news and a journal.
 //!
 //! ```
-//! use kirk_executive::{Mission, Options, begin};
+//! use kirk_executive::{Assignment, Options, begin};
 //! use kirk_runtime::{Plan, Scope, Speed, handovers};
 //!
 //! let network = kirk_network::json::read(
@@ -12,7 +12,7 @@
 //! .expect("a valid network");
 //! let plan = Plan::new(&network).expect("a controllable network");
 //! let handovers = handovers(plan.network(), None, Scope::Starts);
-//! let mission = Mission { program: "a drive".into(), network, plan, handovers };
+//! let mission = Assignment { program: "a drive".into(), network, plan, handovers };
 //! // A hundred times as fast as the world, without a driver, a journal, or a port for news.
 //! let speed = Speed::try_from(100.0).expect("a speed");
 //! let options = Options { speed, ..Options::default() };
@@ -63,7 +63,7 @@ pub use driver::{Driver, Said};
 pub use happening::Happening;
 pub use http::read_observations;
 pub use lateness::Lateness;
-pub use mission::{Http, Mission, Options, Ready, Screen, Zero, begin};
+pub use mission::{Assignment, Http, Options, Ready, Screen, Zero, begin};
 pub use resume::{Resumption, resume};
 pub use run::Ended;
 pub use signals::stop_on_signals;

@@ -20,7 +20,7 @@ use crate::seconds;
 
 /// What is executed.
 #[derive(Clone, Debug)]
-pub struct Mission {
+pub struct Assignment {
     /// The control program, or the name of the network.
     pub program: String,
     /// The network as written, not merged.
@@ -144,7 +144,7 @@ pub(crate) const PATIENCE: Patience =
 /// # Errors
 /// A sentence that says what cannot be opened. Then nothing has been started.
 pub fn begin(
-    mission: Mission,
+    mission: Assignment,
     options: Options,
     journal: Option<&Path>,
     said: Sender<Said>,
@@ -223,7 +223,7 @@ pub(crate) fn open(options: &Options) -> Result<Option<Ear>, String> {
     Ok(Some((listener, token)))
 }
 
-fn setup(mission: &Mission, options: &Options) -> Setup {
+fn setup(mission: &Assignment, options: &Options) -> Setup {
     let scaled = |real: Duration| options.speed.mission(real);
     let lead = options.tolerance;
     let settings = Settings {

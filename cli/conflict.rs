@@ -52,8 +52,8 @@ pub(crate) struct ChangedJson<'a> {
     title: String,
     #[serde(flatten)]
     place: SpotJson<'a>,
-    from: Option<Duration>,
-    to: Option<Duration>,
+    from: Option<Bound>,
+    to: Option<Bound>,
     applicable: bool,
 }
 
@@ -73,13 +73,12 @@ impl<'a> SpotJson<'a> {
 
 impl<'a> ChangedJson<'a> {
     pub(crate) fn new(change: &'a Changed, reporter: &'a Reporter<'_>) -> ChangedJson<'a> {
-        let finite = |bound: Option<Bound>| bound.and_then(Bound::finite);
         ChangedJson {
             what: change.what(),
             title: change.title(),
             place: SpotJson::new(change.place, reporter),
-            from: finite(change.amounts().map(|(from, _)| from)),
-            to: finite(change.amounts().map(|(_, to)| to)),
+            from: change.amounts().map(|(from, _)| from),
+            to: change.amounts().map(|(_, to)| to),
             applicable: change.is_editable(),
         }
     }

@@ -10,7 +10,7 @@ use kirk_network::promise::{promises, stretch};
 use kirk_network::slack::{Factor, Slack, beyond, common_factor, slack};
 use kirk_network::stnu::TooLarge;
 use kirk_network::vary::Knob;
-use kirk_network::walk::{Step, walk};
+use kirk_network::walk::{self, walk};
 use kirk_network::{Bound, Duration, EventId, Network, Part, Time};
 use serde::Serialize;
 
@@ -62,11 +62,10 @@ pub(crate) fn slack_of(arguments: &SlackOf, common: &Common) -> io::Result<Statu
 struct Left {
     /// The tightest first.
     bounds: Vec<Measured>,
-    /// What the tightest rests on: what each step needs, and what it is.
-    critical: Vec<(Duration, String)>,
+    /// What the tightest rests on.
+    critical: Vec<Step>,
     activities: Vec<Activity>,
-    /// How late each news may be alone: the event, its longest delay, and the longest it could have.
-    news: Vec<(String, Bound, Bound)>,
+    news: Vec<News>,
     factor: Option<Factor>,
 }
 
@@ -77,11 +76,27 @@ struct Measured {
     place: Span,
 }
 
+/// One step of what a bound rests on: what it is, and what it needs.
+#[derive(Serialize)]
+struct Step {
+    what: String,
+    needs: Duration,
+}
+
 /// An activity of ours.
+#[derive(Serialize)]
 struct Activity {
     name: String,
-    latest: Option<Time>,
-    stretch: Option<Bound>,
+    latest_start: Option<Time>,
+    may_take: Option<Bound>,
+}
+
+/// How late the news of an event may be alone: its longest delay, and the longest it could have.
+#[derive(Serialize)]
+struct News {
+    event: String,
+    value: Bound,
+    most: Bound,
 }
 
 fn measure(network: &Network, input: &Loaded) -> Result<Option<Left>, TooLarge> {
@@ -104,16 +119,16 @@ fn measure(network: &Network, input: &Loaded) -> Result<Option<Left>, TooLarge> 
     };
     let steps = conflict.and_then(|conflict| walk(network, &conflict)).unwrap_or_default();
     // A microsecond further it would be one too many; what is told is what is written.
-    let step = |step: Step| {
+    let step = |step: walk::Step| {
         let bound = step.part.bound(network);
         let needs = if step.needs < Duration::ZERO { -bound } else { bound };
-        Some((needs, what(step.part, origins.of(step.part)?.0)?))
+        Some(Step { what: what(step.part, origins.of(step.part)?.0)?, needs })
     };
     let critical = steps.into_iter().filter_map(step).collect();
     let news = bounds.iter().filter_map(|bound| match bound.slack.knob.parts()[0] {
         Part::DelayMax(index) => {
             let event = network.label(network.contingents()[index].to).to_string();
-            Some((event, bound.slack.value, bound.slack.most))
+            Some(News { event, value: bound.slack.value, most: bound.slack.most })
         }
         _ => None,
     });
@@ -162,7 +177,7 @@ fn activities(network: &Network, input: &Loaded) -> Result<Vec<Activity>, TooLar
     let mut activities = Vec::new();
     for ((name, _, takes), promise) in starts.into_iter().zip(promised) {
         let stretch = takes.map(|index| stretch(network, index)).transpose()?.flatten();
-        activities.push(Activity { name, latest: promise.from, stretch });
+        activities.push(Activity { name, latest_start: promise.from, may_take: stretch });
     }
     Ok(activities)
 }
@@ -186,26 +201,26 @@ impl Left {
         }
         if !self.critical.is_empty() {
             lines.extend([String::new(), "what the tightest of them rests on".to_string()]);
-            for (needs, text) in &self.critical {
+            for Step { what, needs } in &self.critical {
                 let needed = if *needs < Duration::ZERO {
                     format!("{} s are there", -*needs)
                 } else {
                     format!("needs {needs} s")
                 };
-                lines.push(format!("{needed:>22}  {text}"));
+                lines.push(format!("{needed:>22}  {what}"));
             }
         }
         if !self.activities.is_empty() {
             lines.extend([String::new(), format!("{:>12}  {:>12}  activity", "latest start", "may take")]);
-            for Activity { name, latest, stretch } in &self.activities {
-                let latest = latest.map_or("any".to_string(), |latest| format!("{latest} s"));
-                let takes = stretch.map_or(String::new(), value);
+            for Activity { name, latest_start, may_take } in &self.activities {
+                let latest = latest_start.map_or("any".to_string(), |latest| format!("{latest} s"));
+                let takes = may_take.map_or(String::new(), value);
                 lines.push(format!("{latest:>12}  {takes:>12}  {name}"));
             }
         }
         if !self.news.is_empty() {
             lines.extend([String::new(), format!("{:>12}  {:>12}  news of", "late by", "at most")]);
-            for (event, now, most) in &self.news {
+            for News { event, value: now, most } in &self.news {
                 lines.push(format!("{:>12}  {:>12}  {event}", value(*now), value(*most)));
             }
         }
@@ -234,9 +249,9 @@ struct SlackJson<'a> {
     file: &'a str,
     controllable: bool,
     slack: Vec<BoundJson<'a>>,
-    critical: Vec<StepJson<'a>>,
-    activities: Vec<ActivityJson<'a>>,
-    budget: Vec<NewsJson<'a>>,
+    critical: &'a [Step],
+    activities: &'a [Activity],
+    budget: &'a [News],
     /// By what factor all longest delays may grow together; absent if no news is late.
     #[serde(skip_serializing_if = "Option::is_none")]
     factor: Option<Option<Duration>>,
@@ -248,30 +263,10 @@ struct BoundJson<'a> {
     file: &'a str,
     span: Option<SpanJson>,
     bound: Side,
-    value: Option<Duration>,
-    least: Option<Duration>,
-    most: Option<Duration>,
+    value: Bound,
+    least: Bound,
+    most: Bound,
     room: Option<Duration>,
-}
-
-#[derive(Serialize)]
-struct StepJson<'a> {
-    what: &'a str,
-    needs: Duration,
-}
-
-#[derive(Serialize)]
-struct ActivityJson<'a> {
-    name: &'a str,
-    latest_start: Option<Time>,
-    may_take: Option<Duration>,
-}
-
-#[derive(Serialize)]
-struct NewsJson<'a> {
-    event: &'a str,
-    value: Option<Duration>,
-    most: Option<Duration>,
 }
 
 impl<'a> SlackJson<'a> {
@@ -281,9 +276,9 @@ impl<'a> SlackJson<'a> {
             file,
             controllable: false,
             slack: Vec::new(),
-            critical: Vec::new(),
-            activities: Vec::new(),
-            budget: Vec::new(),
+            critical: &[],
+            activities: &[],
+            budget: &[],
             factor: None,
         }
     }
@@ -294,29 +289,17 @@ impl<'a> SlackJson<'a> {
             file: reporter.name(*place),
             span: reporter.span_json(*place),
             bound: *side,
-            value: slack.value.finite(),
-            least: slack.least.finite(),
-            most: slack.most.finite(),
+            value: slack.value,
+            least: slack.least,
+            most: slack.most,
             room: slack.room,
         };
         SlackJson {
             controllable: true,
             slack: left.bounds.iter().map(bound).collect(),
-            critical: left.critical.iter().map(|(needs, what)| StepJson { what, needs: *needs }).collect(),
-            activities: left
-                .activities
-                .iter()
-                .map(|Activity { name, latest, stretch }| ActivityJson {
-                    name,
-                    latest_start: *latest,
-                    may_take: stretch.and_then(Bound::finite),
-                })
-                .collect(),
-            budget: left
-                .news
-                .iter()
-                .map(|(event, value, most)| NewsJson { event, value: value.finite(), most: most.finite() })
-                .collect(),
+            critical: &left.critical,
+            activities: &left.activities,
+            budget: &left.news,
             factor: left.factor.map(|factor| match factor {
                 Factor::Millionths(millionths) => Some(Duration::from_micros(millionths)),
                 Factor::Unlimited => None,

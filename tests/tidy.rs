@@ -118,7 +118,7 @@ fn the_phases_of_the_compiler_report_what_they_know_and_no_sentences() {
 #[test]
 fn diagnostics_are_worded_in_one_place_of_each_crate() {
     let mut files = Vec::new();
-    for folder in ["cli", "compiler/src", "lsp/src"] {
+    for folder in ["cli", "compiler/src", "lsp/src", "team/src"] {
         rust_files(Path::new(folder), &mut files);
     }
     let is_there = |file: &Path| file.iter().any(|part| part == "wording" || part == "wording.rs");

@@ -382,6 +382,13 @@ impl<'de> Deserialize<'de> for Duration {
     }
 }
 
+/// A number, or `null` for no bound.
+impl Serialize for Bound {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.finite().serialize(serializer)
+    }
+}
+
 impl Serialize for Time {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.since_origin().serialize(serializer)

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use kirk_compiler::{self as compiler, Code, Diagnostic, Explain, OriginKind, Origins, Span, too_large};
+use kirk_compiler::{self as compiler, Diagnostic, Explain, OriginKind, Origins, Span, too_large};
 use kirk_network::stnu::TooLarge;
 use kirk_network::{Bound, Duration, EventId, Network, Requirement};
 
@@ -145,11 +145,8 @@ impl Mission {
 impl NoVerdict {
     /// It at the mission, which is named there.
     pub fn diagnostics(&self, mission: Span) -> Vec<Diagnostic> {
-        let error = |code, message: String| Diagnostic::error(code, mission, message);
         match self {
-            NoVerdict::Team(errors) => {
-                errors.iter().map(|wrong| error(Code::WrongShape, wrong.to_string())).collect()
-            }
+            NoVerdict::Team(errors) => errors.iter().map(|wrong| wording::no_team(wrong, mission)).collect(),
             NoVerdict::TooLarge => vec![too_large(mission)],
         }
     }

@@ -5,7 +5,7 @@ use kirk_network::{Bound, Delay, Duration, EventId, Network};
 
 use crate::find::Agreement;
 use crate::mission::Mission;
-use crate::model::{AgentId, Team};
+use crate::model::{AgentId, Team, TeamError};
 use crate::promise::Promise;
 use crate::shortage::{Cause, Change, Member, NotFound, Remedy};
 
@@ -100,6 +100,11 @@ impl<'a> Moment<'a> {
             Moment::Event(what) => format!("`{what}` has happened"),
         }
     }
+}
+
+/// What is said of parts that do not make a team. Most of that the compiler has told already.
+pub(crate) fn no_team(wrong: &TeamError, mission: Span) -> Diagnostic {
+    Diagnostic::error(Code::WrongShape, mission, wrong.to_string())
 }
 
 /// That no promises were found, how much is missing, of what that is the sum, and which link would do.

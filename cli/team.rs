@@ -142,9 +142,8 @@ impl<'a> NetworkJson<'a> {
         let mut owners = BTreeMap::new();
         for (event, owner) in network.events().iter().zip(&written.owners) {
             let names = event.names.iter().map(|name| name.text.as_str());
-            owners.extend(
-                owner.into_iter().flat_map(|owner| names.clone().map(move |name| (name, agent(*owner)))),
-            );
+            owners
+                .extend(owner.iter().flat_map(|owner| names.clone().map(move |name| (name, agent(*owner)))));
         }
         NetworkJson {
             format: "kirk-team/1",

@@ -81,7 +81,7 @@ pub struct Timing {
     /// How early and late the news of the end may be.
     pub delay: Bounds,
     /// Who hears of the end first, if it is not who executes it.
-    pub observed_by: Option<Expression>,
+    pub observed_by: Option<Box<Expression>>,
 }
 
 /// An interval of durations, with places for messages.

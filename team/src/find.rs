@@ -22,7 +22,7 @@ use crate::whole::Whole;
 pub struct Options {
     /// An agent keeps this much of each promise in reserve, as clocks are late: it is done so much earlier than it says.
     pub tolerance: Duration,
-    /// So many rounds of checks at most with promises of the same events.
+    /// So many rounds of checks at most with promises of the same events, or twice as many as there are promises.
     pub rounds: usize,
     /// So many ways at most to choose what promises are measured from and who keeps what.
     pub choices: usize,

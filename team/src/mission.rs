@@ -12,7 +12,9 @@ use crate::shortage::{Remedy, remedies};
 use crate::wording;
 
 /// Of teams with more events than this no remedies are looked for: each takes dozens of searches.
-const LARGE: usize = 1_000;
+const LARGE: usize = 400;
+/// So many choices are looked through in each of them; somebody waits.
+const FEW: usize = 2;
 
 /// A mission of a team, and whether the team can execute it.
 #[derive(Clone, Debug)]
@@ -73,7 +75,8 @@ pub fn judge(
     let verdict = find(&team, options).map_err(too_large)?;
     let remedies = match &verdict {
         Verdict::NotFound(missing) if network.events().len() <= LARGE => {
-            remedies(&team, missing, options).map_err(too_large)?
+            let quick = Options { choices: FEW, soonest: false, ..*options };
+            remedies(&team, missing, &quick).map_err(too_large)?
         }
         _ => Vec::new(),
     };

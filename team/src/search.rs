@@ -20,6 +20,8 @@ use crate::promise::{Promise, Term};
 use crate::views::{Choice, Numbered, Outline, Pair, Plan, Reserve, news, pairs, plan};
 use crate::whole::Whole;
 
+/// With more choices times events times events than this nobody would wait for the answer.
+const WORK: usize = 600_000;
 /// So many bases are tried for one event.
 const BASES: usize = 4;
 
@@ -97,7 +99,7 @@ impl<'a> Finder<'a> {
             open.push(Reverse((0_usize, made, choice)));
             made += 1;
         }
-        while seen.len() < self.options.choices
+        while seen.len() < self.choices()
             && let Some(Reverse((depth, _, choice))) = open.pop()
         {
             if !found.is_empty() && (depth > 0 || !self.options.soonest) {
@@ -151,7 +153,8 @@ impl<'a> Finder<'a> {
         goal: Goal,
     ) -> Result<Tried, TooLarge> {
         let mut views: Vec<Option<(Numbered, bool)>> = plan.views.iter().map(|_| None).collect();
-        for _ in 0..self.options.rounds {
+        // A round may settle no more than one promise.
+        for _ in 0..self.options.rounds.max(2 * plan.promises.len()) {
             let known = cuts.len();
             for (outline, slot) in plan.views.iter().zip(&mut views) {
                 if slot.is_some() {
@@ -227,6 +230,12 @@ impl<'a> Finder<'a> {
         let tolerance = self.options.tolerance.as_micros();
         let reserve = Reserve { tolerance, apart, rules: &self.options.rules };
         outline.numbered(self.team, self.whole, &self.pairs, promises, reserve)
+    }
+
+    /// How many ways are tried: of large teams fewer, as each takes its time, but always both ways to begin.
+    fn choices(&self) -> usize {
+        let events = self.whole.owner.len().max(1);
+        self.options.choices.min((WORK / (events * events)).max(2))
     }
 
     /// All promises measured from the origin: agreed dates.

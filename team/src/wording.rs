@@ -130,7 +130,8 @@ pub(crate) fn not_found(mission: &Mission, missing: &NotFound, explain: &Explain
     let would_do: Vec<String> =
         mission.remedies.iter().map(|remedy| remedy.sentence(&mission.team)).collect();
     diagnostic.help(match would_do.as_slice() {
-        [] => "No other link alone would do. Let the bounds named here leave more room; a moment that was agreed on needs no news."
+        [] => "No change of one link alone was found that would do. Let the bounds leave more room; a moment that was agreed on needs no \
+               news."
             .to_string(),
         [one] => format!("This would do: {one}."),
         _ => format!("Each alone would do: {}.", would_do.join("; ")),

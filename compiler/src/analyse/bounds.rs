@@ -46,7 +46,8 @@ impl Analyser<'_> {
             let observer = observer.span;
             self.problems.push(Problem::ObserverNotContingent { program: program(), observer });
         }
-        let observed_by = duration.observed_by.as_ref().and_then(|agent| self.resolver().agent(agent));
+        let observed_by =
+            duration.observed_by.as_ref().and_then(|agent| self.resolver().agent(agent)).map(Box::new);
         Timing { bounds, contingent: duration.contingent, delay, observed_by }
     }
 }

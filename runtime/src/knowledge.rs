@@ -304,10 +304,16 @@ impl Knowledge {
             let parent =
                 if from == root { Interval::at(start) } else { allowed[self.number[from.index()] as usize] };
             let here = Interval::new(allowed[at].earliest, allowed[at].latest.min(by[at]));
-            let by_link = here.and(parent.later(lower, upper));
-            allowed[at] = match self.of(tree[at]).overruled || is_broken && by_link.is_empty() {
-                true => Interval::new(here.earliest.max(parent.earliest).min(here.latest), here.latest),
-                false => by_link,
+            let model = parent.later(lower, upper);
+            let by_link = here.and(model);
+            allowed[at] = if self.of(tree[at]).overruled {
+                Interval::new(here.earliest.max(parent.earliest).min(here.latest), here.latest)
+            } else if is_broken && by_link.is_empty() {
+                // As near to the model as it can be.
+                let earliest = here.earliest.max(parent.earliest).min(here.latest);
+                Interval::new(earliest, here.latest.min(model.latest.max(earliest)))
+            } else {
+                by_link
             };
         }
         allowed

@@ -5,6 +5,7 @@ mod judge;
 mod query;
 mod repair;
 mod run;
+mod show;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
@@ -13,9 +14,10 @@ pub(crate) use judge::{Check, CheckFormat, Compile, Delays, Stage, StageFormat, 
 pub(crate) use query::Query;
 pub(crate) use repair::{Prefer, RepairOf, SlackOf};
 pub(crate) use run::{
-    CompanionName, DriverEvents, DriverStarts, Links, Live, Nature, Replay, Resume, Run, ScreenWhen, Show,
+    CompanionName, DriverEvents, DriverStarts, Links, Live, Nature, Replay, Resume, Run, ScreenWhen, Show, ShowFormat,
     StrategyName,
 };
+pub(crate) use show::{Picture, Pictures};
 
 /// Compiles RMPL control programs to temporal networks with uncertainty, proves that they can always be executed (or
 /// shows which lines make it impossible), and executes them.
@@ -69,6 +71,8 @@ pub(crate) enum Command {
     /// Asks a mission, a record or the journal of a mission, running or not: when can this still happen, what does it wait for, what
     /// if that is heard then.
     Query(Query),
+    /// Draws a mission, the record of an execution, or a journal.
+    Show(Pictures),
     /// Prints what a mission is compiled to.
     Compile(Compile),
     /// Checks a recorded execution against a mission, independently of what executed it.

@@ -9,19 +9,21 @@ use kirk_executive::{
     Assignment, Driver, Ended, Http, Options, Ready, Resumption, Said, Screen, Zero, begin,
 };
 use kirk_network::Duration;
+use kirk_picture::{Chart, Look};
 use kirk_runtime::{
     Dispatcher, Execution, Outcome, Plan, Row, Scope, handovers, leave_out_natures, merge_companions,
 };
 
 use crate::args::{
-    Common, CompanionName, DriverEvents, DriverStarts, Live, Resume, Run, ScreenWhen, Show, StrategyName,
-    TextOrJson,
+    Common, CompanionName, DriverEvents, DriverStarts, Live, Resume, Run, ScreenWhen, Show, ShowFormat,
+    StrategyName,
 };
 use crate::input::Loaded;
 use crate::json::line;
 use crate::live;
 use crate::output::{self, Status, complain, print, remark};
 use crate::replay::print_journal;
+use crate::show::drawn;
 use crate::timetable::timetable;
 use crate::watch;
 use crate::why::why;
@@ -96,7 +98,7 @@ pub(crate) fn resume(arguments: &Resume, common: &Common) -> io::Result<Status> 
                 true => {
                     print_journal(&arguments.journal, None, show, &Common { quiet: true, ..common.clone() })
                 }
-                false => show.execution(&execution, None),
+                false => show.execution(&execution, None, || Chart::of_execution(&execution)),
             }
         }
         Err(message) => wrong(&message),
@@ -111,14 +113,21 @@ fn with_why(execution: &Execution, dispatcher: &Dispatcher) -> Execution {
 }
 
 impl Show {
-    /// Prints an execution by a dispatcher, if that is at hand, and says by the exit status how it ended.
-    pub(crate) fn execution(self, execution: &Execution, by: Option<&Dispatcher>) -> io::Result<Status> {
-        let text = match self.format {
-            TextOrJson::Json => match by.filter(|_| self.why) {
+    /// Prints an execution by a dispatcher, if that is at hand, and says by the exit status how it ended. `chart`: what is to be seen
+    /// of the mission.
+    pub(crate) fn execution(
+        self,
+        execution: &Execution,
+        by: Option<&Dispatcher>,
+        chart: impl FnOnce() -> Chart,
+    ) -> io::Result<Status> {
+        let text = match (self.format, self.format.picture()) {
+            (_, Some(picture)) => drawn(&chart().executed(execution), Look::default(), picture),
+            (ShowFormat::Json, _) => match by.filter(|_| self.why) {
                 Some(dispatcher) => line(&with_why(execution, dispatcher))?,
                 None => line(execution)?,
             },
-            TextOrJson::Text => timetable(execution, by.filter(|_| self.why)),
+            _ => timetable(execution, by.filter(|_| self.why)),
         };
         match print(&text) {
             // The terminal is gone; the mission was executed all the same.
@@ -161,7 +170,9 @@ fn finish(
     if !common.quiet {
         say_lateness(&ended);
     }
-    show.execution(&ended.execution, Some(ended.executive.dispatcher()))
+    let dispatcher = ended.executive.dispatcher();
+    let chart = || Chart::of_network(&ended.execution.program, dispatcher.network());
+    show.execution(&ended.execution, Some(dispatcher), chart)
 }
 
 /// True if the mission is shown on a screen, with a key for each event; an error if it is to be and cannot.

@@ -28,6 +28,7 @@ mod replay;
 mod report;
 mod run;
 mod sarif;
+mod show;
 mod slack;
 mod team;
 mod timetable;
@@ -64,6 +65,7 @@ fn execute(arguments: &Arguments) -> Status {
         Command::Repair(repair) => repair::repair_of(repair, &arguments.common),
         Command::Slack(slack) => slack::slack_of(slack, &arguments.common),
         Command::Query(query) => query::query(query, &arguments.common),
+        Command::Show(pictures) => show::show(pictures, &arguments.common),
         Command::Compile(compile) => compile::compile(compile, &arguments.common),
         Command::Verify(verify) => verify::verify(verify, &arguments.common),
         Command::Generate(generate) => generate::generate(generate, &arguments.common),

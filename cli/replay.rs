@@ -4,6 +4,7 @@ use std::io;
 use std::path::Path;
 
 use kirk_network::Time;
+use kirk_picture::Chart;
 use kirk_runtime::journal::read as read_journal;
 use kirk_runtime::{Output, Speed, replay as repeat};
 
@@ -58,7 +59,9 @@ pub(crate) fn print_journal(
     match replayed {
         Ok(replayed) => {
             let execution = replayed.executive.execution(replayed.at, show.internal);
-            show.execution(&execution, Some(replayed.executive.dispatcher()))
+            let dispatcher = replayed.executive.dispatcher();
+            let chart = || Chart::of_network(&execution.program, dispatcher.network());
+            show.execution(&execution, Some(dispatcher), chart)
         }
         Err(bad) => {
             complain(&format!("`{file}`, {bad}"));

@@ -5,12 +5,13 @@ use std::io;
 use kirk_compiler::{Diagnostic, Severity, Span, too_large};
 use kirk_network::Time;
 use kirk_network::assume::Assumption;
+use kirk_picture::Chart;
 use kirk_runtime::execution::FORMAT;
 use kirk_runtime::{
     Execution, Failure, NoPlan, Outcome, Plan, Reason, Simulation, Strategy, Temper, explained,
 };
 
-use crate::args::{Common, Nature, Run, StrategyName, TextOrJson};
+use crate::args::{Common, Nature, Run, ShowFormat, StrategyName};
 use crate::conflict;
 use crate::execute;
 use crate::input::{Loaded, load_all};
@@ -19,6 +20,7 @@ use crate::news::treatment;
 use crate::observations::Observations;
 use crate::output::{Status, complain, eprint, print};
 use crate::report::Reporter;
+use crate::show::of_input;
 use crate::team;
 
 pub(crate) fn run(arguments: &Run, common: &Common) -> io::Result<Status> {
@@ -31,17 +33,15 @@ pub(crate) fn run(arguments: &Run, common: &Common) -> io::Result<Status> {
         return Ok(Status::Wrong);
     }
     let plan = plan_of(&mut input);
-    let reported = |diagnostic: &Diagnostic| match arguments.show.format {
-        // Nothing but the execution goes to standard output, and nobody looks at notes beside JSON.
-        TextOrJson::Json => diagnostic.severity == Severity::Error,
-        TextOrJson::Text => true,
-    };
+    // Nothing but the execution goes to standard output, and nobody looks at notes beside JSON.
+    let is_text = arguments.show.format == ShowFormat::Text;
+    let reported = |diagnostic: &Diagnostic| is_text || diagnostic.severity == Severity::Error;
     let shown: Vec<Diagnostic> = input.diagnostics.iter().filter(|d| reported(d)).cloned().collect();
     Reporter::new(&input.sources).show(&shown, common)?;
     let plan = match plan {
         None => return Ok(Status::Wrong),
         Some(Err(_)) => {
-            if arguments.show.format == TextOrJson::Json {
+            if arguments.show.format == ShowFormat::Json {
                 print(&line(&not_executed(&input.program(&arguments.selection)))?)?;
             }
             return Ok(Status::No);
@@ -76,7 +76,8 @@ pub(crate) fn run(arguments: &Run, common: &Common) -> io::Result<Status> {
         },
         seed: arguments.seed,
         observations: given.by_event.iter().map(|heard| (heard.event, heard.time)).collect(),
-        internal: arguments.show.internal,
+        // A picture has forms that nobody has named.
+        internal: arguments.show.internal || arguments.show.format.picture().is_some(),
         what_if: arguments.what_if,
     };
     let explained = match explained(&plan, &input.program(&arguments.selection), &simulation) {
@@ -87,7 +88,11 @@ pub(crate) fn run(arguments: &Run, common: &Common) -> io::Result<Status> {
             return Ok(Status::Wrong);
         }
     };
-    arguments.show.execution(&explained.execution, Some(&explained.dispatcher))
+    let chart = || {
+        let of_record = || Chart::of_execution(&explained.execution);
+        of_input(&input, &arguments.selection).unwrap_or_else(of_record)
+    };
+    arguments.show.execution(&explained.execution, Some(&explained.dispatcher), chart)
 }
 
 /// It cannot be promised, and why is among the diagnostics.

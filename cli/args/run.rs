@@ -8,7 +8,7 @@ use jiff::{SignedDuration, Timestamp};
 use kirk_network::{Duration, Time};
 use kirk_runtime::Speed;
 
-use super::{Selection, TextOrJson};
+use super::{Picture, Selection};
 
 #[derive(Debug, Args)]
 pub(crate) struct Run {
@@ -262,8 +262,34 @@ pub(crate) struct Show {
     #[arg(long)]
     pub(crate) why: bool,
     /// How to print the result.
-    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
-    pub(crate) format: TextOrJson,
+    #[arg(long, value_enum, default_value_t = ShowFormat::Text)]
+    pub(crate) format: ShowFormat,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ShowFormat {
+    /// A timetable.
+    Text,
+    /// A record, for programs.
+    Json,
+    /// A picture.
+    Svg,
+    /// A page with the picture.
+    Html,
+    /// A Gantt chart of Mermaid.
+    Mermaid,
+}
+
+impl ShowFormat {
+    /// Which picture it is, if it is one.
+    pub(crate) fn picture(self) -> Option<Picture> {
+        match self {
+            ShowFormat::Text | ShowFormat::Json => None,
+            ShowFormat::Svg => Some(Picture::Svg),
+            ShowFormat::Html => Some(Picture::Html),
+            ShowFormat::Mermaid => Some(Picture::Mermaid),
+        }
+    }
 }
 
 #[derive(Debug, Args)]

@@ -14,8 +14,8 @@ pub(crate) use judge::{Check, CheckFormat, Compile, Delays, Stage, StageFormat, 
 pub(crate) use query::Query;
 pub(crate) use repair::{Prefer, RepairOf, SlackOf};
 pub(crate) use run::{
-    CompanionName, DriverEvents, DriverStarts, Links, Live, Nature, Replay, Resume, Run, ScreenWhen, Show, ShowFormat,
-    StrategyName,
+    CompanionName, DriverEvents, DriverStarts, Links, Live, Nature, Replay, Resume, Run, ScreenWhen, Show,
+    ShowFormat, StrategyName,
 };
 pub(crate) use show::{Picture, Pictures};
 

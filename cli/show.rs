@@ -4,18 +4,21 @@ use std::io;
 use std::path::Path;
 
 use kirk_compiler::Explain;
+use kirk_network::json::parse;
 use kirk_network::{Duration, EventId, Network};
 use kirk_picture::{Chart, Look, Scene, html, mermaid, svg};
+use kirk_runtime::execution::is_record;
 use kirk_runtime::journal::{is_journal, read as read_journal};
 use kirk_runtime::{Execution, replay};
+use kirk_team::record::Record;
 
 use crate::args::{Common, Picture, Pictures, Selection};
 use crate::foreign::one_line;
-use crate::input::{Bytes, Input, load_begun, read};
+use crate::input::{Bytes, Loaded, load_begun, read, without_mark};
 use crate::output::{Status, complain, deliver};
-use crate::query::is_record;
 use crate::replay::LARGEST_JOURNAL;
 use crate::report::Reporter;
+use crate::team;
 use crate::verify::execution_of;
 
 pub(crate) fn show(arguments: &Pictures, common: &Common) -> io::Result<Status> {
@@ -30,9 +33,13 @@ pub(crate) fn show(arguments: &Pictures, common: &Common) -> io::Result<Status> 
     let first = read(&arguments.files[0], LARGEST_JOURNAL);
     let chart = match &first {
         Ok(bytes) if is_journal(bytes) => of_journal(arguments, bytes),
+        Ok(bytes) if team::verify::is_record(bytes) => of_team_record(arguments, bytes),
         Ok(bytes) if is_record(bytes) => return of_record(arguments, first, look, format, common),
         _ => {
             let input = load_begun(&arguments.files, Some(first), &arguments.selection);
+            if input.team().is_some() {
+                return of_team(arguments, input, look, format, common);
+            }
             let Some(chart) = of_input(&input, &arguments.selection) else {
                 Reporter::new(&input.sources).show(&input.diagnostics, common)?;
                 return Ok(Status::Wrong);
@@ -61,7 +68,7 @@ pub(crate) fn drawn(chart: &Chart, look: Look, format: Picture) -> String {
 }
 
 /// What is to be seen of a mission; `None` if it could not be read.
-pub(crate) fn of_input(input: &Input, selection: &Selection) -> Option<Chart> {
+pub(crate) fn of_input(input: &Loaded, selection: &Selection) -> Option<Chart> {
     let network = input.network.as_ref()?;
     let program = input.program(selection);
     let chart = match input.compilation().and_then(|compilation| compilation.episodes.as_ref()) {
@@ -72,7 +79,7 @@ pub(crate) fn of_input(input: &Input, selection: &Selection) -> Option<Chart> {
 }
 
 /// What does not go together, step by step.
-fn told(input: &Input, network: &Network) -> Vec<String> {
+fn told(input: &Loaded, network: &Network) -> Vec<String> {
     let Some(origins) = input.origins() else { return Vec::new() };
     let program = input.program_span();
     let explain = Explain { network, origins, sources: &input.sources, program, theory: false };
@@ -95,6 +102,33 @@ fn of_journal(arguments: &Pictures, bytes: &[u8]) -> Result<Chart, String> {
     let replayed = replay(&journal, |_, _, _| {}).map_err(|bad| told(&bad))?;
     let execution = replayed.executive.execution(replayed.at, true);
     Ok(Chart::of_network(&journal.start.program, &network).executed(&execution))
+}
+
+/// The mission of a team: all agents, as it goes if Nature and the links take the most.
+fn of_team(
+    arguments: &Pictures,
+    mut input: Loaded,
+    look: Look,
+    format: Picture,
+    common: &Common,
+) -> io::Result<Status> {
+    let judged = team::judge(&mut input, false);
+    let program = input.program(&arguments.selection);
+    let record = judged.and_then(|judged| team::simulate::longest(&judged.team?, &program));
+    let Some(record) = record else {
+        Reporter::new(&input.sources).show(&input.diagnostics, common)?;
+        return Ok(if input.network.is_some() { Status::No } else { Status::Wrong });
+    };
+    deliver(&drawn(&Chart::of_team(&record), look, format), arguments.output.as_deref())
+}
+
+fn of_team_record(arguments: &Pictures, bytes: &[u8]) -> Result<Chart, String> {
+    let file = &arguments.files[0];
+    if arguments.files.len() > 1 {
+        return Err(format!("`{file}` is a record of a team, which says who did what: name nothing else"));
+    }
+    let record = parse::<Record>(without_mark(&String::from_utf8_lossy(bytes)));
+    record.map(|record| Chart::of_team(&record)).map_err(|problem| format!("`{file}`: {}", problem.message))
 }
 
 /// A record alone, or beside its mission, which knows what belongs together.

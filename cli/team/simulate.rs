@@ -3,21 +3,23 @@
 use std::io;
 
 use kirk_compiler::{Diagnostic, Severity};
+use kirk_picture::{Chart, Look};
 use kirk_runtime::{How, Outcome, Strategy};
 use kirk_team::record::{Heard, Record, Row};
 use kirk_team::{Agreement, Mission, Mood, Ready, Simulation, Weather};
 
-use crate::args::{Common, Links, Nature, Run, StrategyName, TextOrJson};
+use crate::args::{Common, Links, Nature, Run, ShowFormat, StrategyName};
 use crate::foreign::one_line;
 use crate::input::Loaded;
 use crate::json::line;
 use crate::output::{Status, complain, eprint, print};
 use crate::report::Reporter;
+use crate::show::drawn;
 use crate::team::{judge, promised};
 
 pub(crate) fn run(arguments: &Run, common: &Common, mut input: Loaded) -> io::Result<Status> {
     let judged = judge(&mut input, false);
-    let is_json = arguments.show.format == TextOrJson::Json;
+    let is_json = arguments.show.format == ShowFormat::Json;
     let reported = |diagnostic: &&Diagnostic| !is_json || diagnostic.severity == Severity::Error;
     let shown: Vec<Diagnostic> = input.diagnostics.iter().filter(reported).cloned().collect();
     Reporter::new(&input.sources).show(&shown, common)?;
@@ -39,10 +41,11 @@ pub(crate) fn run(arguments: &Run, common: &Common, mut input: Loaded) -> io::Re
     if common.verbose {
         eprint(&promised(&mission, true))?;
     }
-    match is_json {
-        true => print(&line(&record)?)?,
-        false => print(&timetable(&record))?,
-    }
+    print(&match (is_json, arguments.show.format.picture()) {
+        (true, _) => line(&record)?,
+        (_, Some(picture)) => drawn(&Chart::of_team(&record), Look::default(), picture),
+        (_, None) => timetable(&record),
+    })?;
     Ok(if record.outcome == Outcome::Completed { Status::Yes } else { Status::No })
 }
 
@@ -99,6 +102,12 @@ fn executed(
     };
     let execution = Ready::new(&mission.team, agreement).ok()?.run(&simulation);
     Some(Record::new(names, &mission.team, &execution, arguments.seed, arguments.show.internal))
+}
+
+/// All agents, if Nature and the links take the most; `None` if nothing makes the team sure of it.
+pub(crate) fn longest(mission: &Mission, program: &str) -> Option<Record> {
+    let execution = Ready::new(&mission.team, mission.agreement()?).ok()?.run(&Simulation::default());
+    Some(Record::new((program, &mission.name), &mission.team, &execution, 0, false))
 }
 
 /// One line for each row: when it happened, and for each agent what it knows of it.

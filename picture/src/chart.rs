@@ -8,11 +8,12 @@ use kirk_network::conflicts::{conflicts, without};
 use kirk_network::windows::{Window, windows};
 use kirk_network::{Duration, EventId, Interval, Network, Part, Time};
 use kirk_runtime::{Execution, How, Outcome, Plan, Simulation, simulate};
+use kirk_team::record::{Record, Row};
 
 use crate::lanes::{Place, packed, placed};
 
 /// A mission, or an execution of it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Chart {
     /// What it is called.
     pub title: String,
@@ -20,6 +21,10 @@ pub struct Chart {
     pub says: String,
     /// How many rows there are.
     pub rows: usize,
+    /// Whose rows begin where, if they are several agents'.
+    pub lanes: Vec<(String, usize)>,
+    /// News from one row to another.
+    pub news: Vec<News>,
     /// Activities, and the forms around them that have a name or a limit.
     pub bars: Vec<Bar>,
     /// When all is over, at the latest that is to be seen.
@@ -28,6 +33,17 @@ pub struct Chart {
     pub happened: bool,
     /// What stands below it.
     pub notes: Vec<String>,
+}
+
+/// News that one agent tells another.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct News {
+    /// The row of what happened, and when it did.
+    pub from: (usize, Time),
+    /// The row of who heard of it, and when that was.
+    pub to: (usize, Time),
+    /// What it is of.
+    pub event: String,
 }
 
 /// An activity, or a form around activities.
@@ -177,6 +193,64 @@ impl Chart {
         Chart::new(&execution.program, outcome(execution), rows, bars, true)
     }
 
+    /// The execution of a team: the rows of each agent, one below the other, and who heard of what when.
+    pub fn of_team(record: &Record) -> Chart {
+        // Even who observes it first hears of what Nature ends.
+        let is_natures = |row: &Row| row.agent.as_ref().is_some_and(|agent| row.heard.contains_key(agent));
+        let moment = |row: &Row| {
+            let at = row.happened?;
+            let moment = Moment {
+                earliest: at,
+                latest: Some(at),
+                at_most: at,
+                done: None,
+                heard: None,
+                truth: Some(at),
+            };
+            Some((row.event.clone(), moment))
+        };
+        let moments: Moments = record.rows.iter().filter_map(moment).collect();
+        let (mut bars, mut lanes, mut rows) = (Vec::new(), Vec::new(), 0);
+        for agent in &record.agents {
+            lanes.push((agent.clone(), rows));
+            let mut own =
+                pairs(&moments, |name| record.rows.iter().any(|row| row.event == name && is_natures(row)));
+            let is_own = |event: &str| {
+                record.rows.iter().any(|row| row.event == event && row.agent.as_ref() == Some(agent))
+            };
+            own.retain(|bar| is_own(&format!("{}:start", bar.name)));
+            let height = packed(&mut own).max(1);
+            own.iter_mut().for_each(|bar| bar.row += rows + 1);
+            bars.append(&mut own);
+            rows += 1 + height;
+        }
+        let lane = |agent: &str| lanes.iter().find(|(name, _)| name == agent).map_or(0, |(_, row)| *row);
+        let row_of = |event: &str, agent: &str| {
+            let own = |bar: &&Bar| {
+                event.strip_suffix(":end") == Some(&bar.name)
+                    || event.strip_suffix(":start") == Some(&bar.name)
+            };
+            bars.iter().find(own).map_or(lane(agent) + 1, |bar| bar.row)
+        };
+        let mut news = Vec::new();
+        for row in &record.rows {
+            let (Some(agent), Some(at)) = (&row.agent, row.happened) else { continue };
+            for (listener, heard) in &row.heard {
+                if let Some(heard) = heard.at.filter(|_| listener != agent) {
+                    let from = (row_of(&row.event, agent), at);
+                    news.push(News { from, to: (lane(listener) + 1, heard), event: row.event.clone() });
+                }
+            }
+        }
+        let says = match &record.failure {
+            Some(failure) => format!("at {} s: {}", failure.time, failure.detail),
+            None => format!("completed in {} s", record.makespan),
+        };
+        let chart = Chart::new(&format!("{}, {}", record.program, record.team), says, rows, bars, true);
+        let last = news.iter().map(|news| news.to.1).max().unwrap_or(Time::ZERO);
+        Chart { lanes, end: chart.end.max(last), news, ..chart }
+    }
+
     /// The same with what happened in an execution of it.
     pub fn executed(mut self, execution: &Execution) -> Chart {
         let moments = recorded(execution);
@@ -200,7 +274,7 @@ impl Chart {
 
     fn new(title: &str, says: String, rows: usize, bars: Vec<Bar>, happened: bool) -> Chart {
         let end = bars.iter().flat_map(|bar| [bar.start.last(), bar.end.last()]).max().unwrap_or(Time::ZERO);
-        Chart { title: title.to_string(), says, rows, bars, end, happened, notes: Vec::new() }
+        Chart { title: title.to_string(), says, rows, bars, end, happened, ..Chart::default() }
     }
 }
 

@@ -21,7 +21,7 @@ mod scene;
 mod svg;
 mod ticks;
 
-pub use chart::{Bar, Chart, Moment, Whose};
+pub use chart::{Bar, Chart, Moment, News, Whose};
 pub use html::html;
 pub use mermaid::mermaid;
 pub use scene::{Item, Look, Scene, Shape};

@@ -113,6 +113,8 @@ impl Scene {
             drawing.of = Some(number);
             drawing.bar(bar);
         }
+        drawing.lanes();
+        drawing.news_of_others();
         drawing.names();
         drawing.of = None;
         drawing.legend(bottom + 54.0);
@@ -278,6 +280,28 @@ impl Drawing<'_> {
             };
             let x = self.x(time);
             self.add_known(Shape::Line([x, y - 5.0, x, y + BAR + 5.0]), class, Some(time));
+        }
+    }
+
+    /// Whose rows they are, and a line above them.
+    fn lanes(&mut self) {
+        self.of = None;
+        for (agent, row) in &self.chart.lanes {
+            let y = TOP + ROW * *row as f64;
+            self.add(Shape::Line([LEFT, y + 6.0, LEFT + PLOT, y + 6.0]), "grid");
+            let words = Shape::Words { at: [LEFT, y + 26.0], anchor: Anchor::Start, text: agent.clone() };
+            self.add(words, "agent");
+        }
+    }
+
+    /// From the row of what happened to the row of who heard of it.
+    fn news_of_others(&mut self) {
+        let middle = |row: usize| TOP + ROW * row as f64 + ROW / 2.0 + 4.0;
+        for news in &self.chart.news {
+            let ((from, at), (to, heard)) = (news.from, news.to);
+            let toward = if to > from { BAR / 2.0 } else { -BAR / 2.0 };
+            let arrow = [self.x(at), middle(from) + toward, self.x(heard), middle(to) - toward];
+            self.add_known(Shape::Arrow(arrow), "heard", Some(heard));
         }
     }
 

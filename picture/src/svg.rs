@@ -7,7 +7,7 @@ use crate::scene::{Anchor, Item, Scene, Shape};
 /// Plain rules: not every program that shows SVG knows variables.
 pub(crate) const STYLE: &str = "\
 .kirk{background:#fff;font:11px ui-sans-serif,system-ui,Helvetica,Arial,'DejaVu Sans',sans-serif}\
-.kirk text{fill:#1f2328}.kirk .title{font-size:18px;font-weight:600}.kirk .says,.kirk .tick,.kirk .legend,.kirk .form{fill:#57606a}.kirk .note{white-space:pre}\
+.kirk text{fill:#1f2328}.kirk .title{font-size:18px;font-weight:600}.kirk .says,.kirk .tick,.kirk .legend,.kirk .form{fill:#57606a}.kirk .note{white-space:pre}.kirk .agent{font-size:13px;font-weight:600}\
 .kirk .paper{fill:#fff}.kirk .grid{stroke:#e6e8eb}.kirk .ours{fill:#2f6fde}.kirk .natures{fill:#d98200}\
 .kirk .open{fill:url(#kirk-open);stroke:#d98200;stroke-width:.8}.kirk .around{fill:none;stroke:#8c959f;stroke-dasharray:2 3}\
 .kirk .whisker{stroke:#6e7781;stroke-width:1.2}.kirk .limit{stroke:#cf222e;stroke-width:2;stroke-dasharray:5 3}\

@@ -1,6 +1,7 @@
 //! What is drawn of missions and executions: the examples as snapshots, and what holds of all pictures.
 
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
+#![allow(clippy::disallowed_methods, reason = "the examples are files")]
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,6 +11,7 @@ use kirk_network::generate::{LaneOptions, lanes};
 use kirk_network::rmpl;
 use kirk_picture::{Chart, Look, Scene, Shape, html, mermaid, svg};
 use kirk_runtime::{Plan, Simulation, Temper, simulate};
+use kirk_team::record::Record;
 
 fn missions() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/rmpl");
@@ -163,4 +165,12 @@ fn a_gantt_chart_of_mermaid_names_every_activity() {
     insta::assert_snapshot!(mermaid(&chart(
         &fs::read_to_string("../examples/rmpl/sampling-eva.rmpl").unwrap()
     )));
+}
+
+#[test]
+fn a_team_has_a_lane_for_each_agent_and_news_between_them() {
+    let record: Record = kirk_network::json::parse(include_str!("team.json")).unwrap();
+    let scene = Scene::new(&Chart::of_team(&record), Look::default());
+    assert_eq!(overlapping(&scene), None);
+    insta::assert_snapshot!(told(&scene));
 }

@@ -3,7 +3,7 @@
 use kirk_compiler::repair::Changed;
 use kirk_compiler::{Explain, Origin, OriginKind, Side, Span, StoryStep, Told};
 use kirk_network::assume::Assumption;
-use kirk_network::{Bound, Conflict, Duration, Network, Part};
+use kirk_network::{Bound, Conflict, Duration, EventId, Network, Part};
 use serde::Serialize;
 
 use crate::input::Loaded;
@@ -141,16 +141,9 @@ pub(crate) fn members(
         .members
         .iter()
         .map(|share| {
-            let (ends, index) = match share.part {
-                Part::RequirementUpper(index) | Part::RequirementLower(index) | Part::Join(index) => {
-                    (requirement_ends(network, index), Some(index))
-                }
-                Part::LinkLower(index)
-                | Part::LinkUpper(index)
-                | Part::DelayMin(index)
-                | Part::DelayMax(index) => (link_ends(network, index), Some(index)),
-                Part::AfterOrigin => (None, None),
-            };
+            let label = |event: EventId| network.label(event).to_string();
+            let ends = share.part.ends(network).map(|(from, to)| (label(from), label(to)));
+            let index = share.part.requirement().or(share.part.link());
             let origin = input.origins().and_then(|origins| origins.constraint(share.part));
             let (from, to) = ends.unzip();
             MemberJson {
@@ -166,16 +159,6 @@ pub(crate) fn members(
             }
         })
         .collect()
-}
-
-fn requirement_ends(network: &Network, index: usize) -> Option<(String, String)> {
-    let requirement = network.requirements()[index];
-    Some((network.label(requirement.from).to_string(), network.label(requirement.to).to_string()))
-}
-
-fn link_ends(network: &Network, index: usize) -> Option<(String, String)> {
-    let link = network.contingents()[index];
-    Some((network.label(link.from).to_string(), network.label(link.to).to_string()))
 }
 
 /// One member; the amounts of all add up to a negative number.

@@ -193,15 +193,7 @@ impl Origins {
 
     /// Where the constraint comes from that something is a part of; `None` for what goes without saying.
     pub fn constraint(&self, part: Part) -> Option<&Origin> {
-        match part {
-            Part::RequirementLower(index) | Part::RequirementUpper(index) | Part::Join(index) => {
-                self.requirements.get(index)
-            }
-            Part::LinkLower(index)
-            | Part::LinkUpper(index)
-            | Part::DelayMin(index)
-            | Part::DelayMax(index) => self.contingents.get(index),
-            Part::AfterOrigin => None,
-        }
+        let requirement = part.requirement().and_then(|index| self.requirements.get(index));
+        requirement.or(part.link().and_then(|index| self.contingents.get(index)))
     }
 }

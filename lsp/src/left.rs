@@ -125,10 +125,7 @@ fn of_bound(network: &Network, written: &Written<'_>) -> Option<String> {
         let all = if count > 1 { format!(" in all {count} occurrences together") } else { String::new() };
         return Some(format!("{what}: {now}, and may be {}{all}, with all else guaranteed", slack.range()));
     }
-    let harder = match part {
-        Part::RequirementUpper(_) | Part::LinkLower(_) | Part::DelayMin(_) => "less",
-        _ => "more",
-    };
+    let harder = if part.is_subtracted() { "more" } else { "less" };
     let by = slack.room.map_or("any amount".to_string(), |room| format!("up to {room} s"));
     Some(format!(
         "{what}: may be {by} {harder} in all {count} occurrences together, with all else guaranteed"

@@ -146,7 +146,7 @@ impl Tally<'_> {
     pub(crate) fn total(&self) -> Result<i64, TooLarge> {
         let mut total = 0_i64;
         for (&part, &times) in &self.times {
-            let amount = times.checked_mul(signed_bound(self.network, part)).ok_or(TooLarge)?;
+            let amount = times.checked_mul(part.signed(self.network).as_micros()).ok_or(TooLarge)?;
             total = total.checked_add(amount).ok_or(TooLarge)?;
         }
         Ok(total)
@@ -156,7 +156,7 @@ impl Tally<'_> {
         let mut members = Vec::new();
         let total = self.total()?;
         for (&part, &times) in &self.times {
-            let bound = signed_bound(self.network, part);
+            let bound = part.signed(self.network).as_micros();
             let amount = times.checked_mul(bound).ok_or(TooLarge)?;
             // Opposite uses of one bound cancel, and news at once is nobody's fault.
             let at_once = bound == 0 && matches!(part, Part::DelayMin(_) | Part::DelayMax(_));
@@ -167,15 +167,6 @@ impl Tally<'_> {
             }
         }
         Ok(Conflict { members, total: Duration::from_micros(total), conservative: false })
-    }
-}
-
-/// What one use of a part contributes, with the sign given at [`Part`].
-fn signed_bound(network: &Network, part: Part) -> i64 {
-    let bound = part.bound(network).as_micros();
-    match part {
-        Part::RequirementLower(_) | Part::LinkUpper(_) | Part::DelayMax(_) => -bound,
-        _ => bound,
     }
 }
 

@@ -114,10 +114,7 @@ fn members(conflict: &Conflict) -> BTreeSet<Member> {
     let member = |share: &Share| match share.part {
         Part::RequirementUpper(index) => Some(Member::Upper(index)),
         Part::RequirementLower(index) => Some(Member::Lower(index)),
-        Part::LinkLower(index) | Part::LinkUpper(index) | Part::DelayMin(index) | Part::DelayMax(index) => {
-            Some(Member::Link(index))
-        }
-        Part::AfterOrigin | Part::Join(_) => None,
+        part => part.link().map(Member::Link),
     };
     conflict.members.iter().filter_map(member).collect()
 }

@@ -1,6 +1,6 @@
 //! Why a network is not controllable: a semi-reducible negative cycle, in terms of the constraints a user wrote.
 
-use crate::model::Network;
+use crate::model::{EventId, Network};
 use crate::time::{Bound, Duration};
 
 /// The constraints that cannot all be honoured, whatever strategy is tried.
@@ -67,6 +67,32 @@ impl Part {
             }
             _ => None,
         }
+    }
+
+    /// The requirement it is of.
+    pub fn requirement(self) -> Option<usize> {
+        match self {
+            Part::RequirementUpper(index) | Part::RequirementLower(index) | Part::Join(index) => Some(index),
+            _ => None,
+        }
+    }
+
+    /// From where to where the constraint reaches that it is of.
+    pub fn ends(self, network: &Network) -> Option<(EventId, EventId)> {
+        let requirement = self.requirement().map(|index| network.requirements()[index]);
+        let link = self.link().map(|index| network.contingents()[index]);
+        requirement.map(|it| (it.from, it.to)).or(link.map(|it| (it.from, it.to)))
+    }
+
+    /// True if its bound counts with a minus: less of it is harder to keep, and of the others more.
+    pub fn is_subtracted(self) -> bool {
+        matches!(self, Part::RequirementLower(_) | Part::LinkUpper(_) | Part::DelayMax(_))
+    }
+
+    /// What one use of it contributes: the bound with its sign.
+    pub fn signed(self, network: &Network) -> Duration {
+        let bound = self.bound(network);
+        if self.is_subtracted() { -bound } else { bound }
     }
 
     /// The bound itself, without sign: what the network says there. Zero for what has no bound.

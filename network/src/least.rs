@@ -67,10 +67,7 @@ pub fn could_settle(network: &Network, conflict: &Conflict) -> Vec<Part> {
                 parts.insert(share.part);
             }
             Part::Join(index) => parts.extend([Part::RequirementUpper(index), Part::RequirementLower(index)]),
-            Part::LinkLower(link) | Part::LinkUpper(link) | Part::DelayMin(link) | Part::DelayMax(link) => {
-                roots.insert(root(link));
-            }
-            Part::AfterOrigin => {}
+            part => roots.extend(part.link().map(root)),
         }
     }
     for link in (0..merged.contingents().len()).filter(|link| roots.contains(&root(*link))) {

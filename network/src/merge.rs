@@ -130,18 +130,11 @@ impl Merged {
                 Part::RequirementLower(index) => Part::RequirementLower(self.requirement_of[index]),
                 other => other,
             };
-            match part {
-                Part::RequirementUpper(index) | Part::RequirementLower(index) => {
-                    touched.extend([original.requirements()[index].from, original.requirements()[index].to]);
-                }
-                Part::LinkLower(index) | Part::LinkUpper(index) => {
-                    touched.extend([original.contingents()[index].from, original.contingents()[index].to]);
-                }
-                Part::DelayMin(index) | Part::DelayMax(index) => {
-                    touched.push(original.contingents()[index].to)
-                }
-                Part::AfterOrigin => touched.push(original.origin()),
-                Part::Join(_) => {}
+            match (part, part.ends(original)) {
+                (Part::Join(_), _) => {}
+                (Part::DelayMin(_) | Part::DelayMax(_), Some((_, to))) => touched.push(to),
+                (_, Some((from, to))) => touched.extend([from, to]),
+                (_, None) => touched.push(original.origin()),
             }
             members.push(Share { part, ..*share });
         }

@@ -55,7 +55,7 @@ pub fn slack(network: &Network, knobs: &[Knob]) -> Result<Option<Vec<Slack>>, To
         let dial = probe.dial(knob);
         let (hard, easy) = (hardest_yes(&mut probe, &dial), easiest_yes(&mut probe, &dial));
         let (mut least, mut most) = (dial.value(hard), dial.value(easy));
-        if matches!(knob.parts()[0], Part::RequirementLower(_) | Part::LinkUpper(_) | Part::DelayMax(_)) {
+        if knob.parts()[0].is_subtracted() {
             std::mem::swap(&mut least, &mut most);
         }
         let room = dial.distance(hard);
@@ -83,9 +83,9 @@ pub fn bounds(network: &Network) -> Vec<Knob> {
 /// # Errors
 /// [`TooLarge`] if the durations add up to more than 64-bit microseconds can hold.
 pub fn beyond(network: &Network, slack: &Slack) -> Result<Option<Conflict>, TooLarge> {
-    let (end, micro) = match slack.knob.parts()[0] {
-        Part::RequirementUpper(_) | Part::LinkLower(_) | Part::DelayMin(_) => (slack.least, -1),
-        _ => (slack.most, 1),
+    let (end, micro) = match slack.knob.parts()[0].is_subtracted() {
+        true => (slack.most, 1),
+        false => (slack.least, -1),
     };
     let further = end.finite().and_then(|end| end.checked_add(Duration::from_micros(micro)));
     let further = further.and_then(|value| slack.knob.at(network, Bound::Finite(value)));

@@ -73,21 +73,12 @@ pub fn walk(network: &Network, conflict: &Conflict) -> Option<Vec<Step>> {
 
 /// From where to where a bound leads, against its edge.
 fn ends(network: &Network, part: Part) -> Option<(EventId, EventId)> {
-    let requirement = |index: usize| (network.requirements()[index].from, network.requirements()[index].to);
-    let link = |index: usize| (network.contingents()[index].from, network.contingents()[index].to);
+    let (from, to) = part.ends(network)?;
     match part {
-        Part::RequirementLower(index) => Some(requirement(index)),
-        Part::LinkUpper(index) => Some(link(index)),
-        Part::RequirementUpper(index) => {
-            let (from, to) = requirement(index);
-            Some((to, from))
-        }
-        Part::LinkLower(index) => {
-            let (from, to) = link(index);
-            Some((to, from))
-        }
-        Part::DelayMin(index) | Part::DelayMax(index) => Some((link(index).1, link(index).1)),
+        Part::DelayMin(_) | Part::DelayMax(_) => Some((to, to)),
         Part::AfterOrigin | Part::Join(_) => None,
+        _ if part.is_subtracted() => Some((from, to)),
+        _ => Some((to, from)),
     }
 }
 

@@ -115,10 +115,10 @@ impl Whole {
             }
         }
         let merged = &self.merged.network;
-        let member = |(&part, &times): (&Part, &u32)| {
-            let bound = part.bound(merged).saturating_mul(i64::from(times));
-            let negative = matches!(part, Part::RequirementLower(_) | Part::LinkUpper(_) | Part::DelayMax(_));
-            Share { part, times, amount: if negative { -bound } else { bound } }
+        let member = |(&part, &times): (&Part, &u32)| Share {
+            part,
+            times,
+            amount: part.signed(merged).saturating_mul(i64::from(times)),
         };
         let members = times.iter().map(member).collect();
         Ok(Some(self.merged.unmerge(&Conflict { members, ..found }, original)))

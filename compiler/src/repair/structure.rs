@@ -156,12 +156,8 @@ fn spans(
 ) -> BTreeSet<Span> {
     let members = conflict.members.iter().map(|share| share.part);
     let parts = could_settle(network, conflict).into_iter().chain(members);
-    let requirement = |part: Part| match part {
-        Part::RequirementLower(index) | Part::RequirementUpper(index) | Part::Join(index) => {
-            Some((origins.constraint(part)?, network.requirements().get(index)?))
-        }
-        _ => None,
-    };
+    let requirement =
+        |part: Part| Some((origins.constraint(part)?, network.requirements().get(part.requirement()?)?));
     let found = parts.filter_map(requirement).filter(|(origin, requirement)| is_meant(origin, requirement));
     found.map(|(origin, _)| origin.span).collect()
 }

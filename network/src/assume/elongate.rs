@@ -150,11 +150,10 @@ impl Elongated {
             }
         }
         let members = times.into_iter().filter_map(|(part, times)| {
-            let bound = Share { part, times, amount: Duration::ZERO }.bound(network).as_micros();
+            let bound = part.signed(network).as_micros();
             // News at once is nobody's fault.
             let delay = matches!(part, Part::DelayMin(_) | Part::DelayMax(_));
-            let takes = matches!(part, Part::RequirementLower(_) | Part::LinkUpper(_) | Part::DelayMax(_));
-            let amount = i64::from(times).saturating_mul(if takes { -bound } else { bound });
+            let amount = i64::from(times).saturating_mul(bound);
             (!delay || bound != 0).then_some(Share { part, times, amount: Duration::from_micros(amount) })
         });
         Conflict { members: members.collect(), ..*conflict }

@@ -10,16 +10,12 @@ pub(crate) const INFINITE: i64 = i64::MAX;
 /// The largest finite position, and, negated, the least.
 pub(crate) const FARTHEST: i64 = Duration::MAX.as_micros();
 
-/// True if a larger value is easier.
-fn more_is_easier(part: Part) -> bool {
-    matches!(part, Part::RequirementUpper(_) | Part::LinkLower(_) | Part::DelayMin(_))
-}
-
 /// The position of a value, in microseconds.
 pub(super) fn position(part: Part, value: Bound) -> i64 {
     match value {
-        Bound::Finite(value) if more_is_easier(part) => value.as_micros(),
-        Bound::Finite(value) => -value.as_micros(),
+        // Less is easier of what is subtracted.
+        Bound::Finite(value) if part.is_subtracted() => -value.as_micros(),
+        Bound::Finite(value) => value.as_micros(),
         Bound::Infinite if matches!(part, Part::DelayMax(_)) => -INFINITE,
         Bound::Infinite => INFINITE,
     }
@@ -30,8 +26,8 @@ pub(super) fn value_at(part: Part, position: i64) -> Bound {
     match position {
         INFINITE => Bound::Infinite,
         _ if position == -INFINITE => Bound::Infinite,
-        _ if more_is_easier(part) => Bound::Finite(Duration::from_micros(position)),
-        _ => Bound::Finite(Duration::from_micros(-position)),
+        _ if part.is_subtracted() => Bound::Finite(Duration::from_micros(-position)),
+        _ => Bound::Finite(Duration::from_micros(position)),
     }
 }
 

@@ -302,15 +302,10 @@ enum Saved {
 
 impl Saved {
     fn of(network: &Network, part: Part) -> Saved {
-        match part {
-            Part::RequirementUpper(index) | Part::RequirementLower(index) | Part::Join(index) => {
-                Saved::Requirement(index, network.requirements()[index])
-            }
-            Part::LinkLower(index)
-            | Part::LinkUpper(index)
-            | Part::DelayMin(index)
-            | Part::DelayMax(index) => Saved::Link(index, network.contingents()[index]),
-            Part::AfterOrigin => unreachable!("it has no bound, so there is no knob for it"),
+        match (part.requirement(), part.link()) {
+            (Some(index), _) => Saved::Requirement(index, network.requirements()[index]),
+            (_, Some(index)) => Saved::Link(index, network.contingents()[index]),
+            (None, None) => unreachable!("it has no bound, so there is no knob for it"),
         }
     }
 

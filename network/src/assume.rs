@@ -101,14 +101,8 @@ fn with_delays(network: &Network, assumption: Assumption) -> Network {
         let delay = assumed(link.delay, assumption);
         ContingentLink { delay, ..*link }
     });
-    Network::new(
-        network.name().to_string(),
-        network.origin(),
-        network.events().to_vec(),
-        network.requirements().to_vec(),
-        links.collect(),
-    )
-    .unwrap_or_else(|errors| unreachable!("a valid network with other delays is valid: {errors:?}"))
+    let others = network.with(network.requirements().to_vec(), links.collect());
+    others.unwrap_or_else(|errors| unreachable!("a valid network with other delays is valid: {errors:?}"))
 }
 
 fn assumed(delay: Delay, assumption: Assumption) -> Delay {

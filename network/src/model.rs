@@ -138,19 +138,14 @@ impl Network {
     fn valid(
         name: String,
         origin: EventId,
-        events: Vec<Event>,
+        events: impl Into<Arc<[Event]>>,
         requirements: Vec<Requirement>,
         contingents: Vec<ContingentLink>,
         mut errors: Vec<ModelError>,
     ) -> Result<Network, Vec<ModelError>> {
-        let mut network = Network {
-            name,
-            origin,
-            link_of: vec![None; events.len()],
-            events: events.into(),
-            requirements,
-            contingents,
-        };
+        let events = events.into();
+        let link_of = vec![None; events.len()];
+        let mut network = Network { name, origin, link_of, events, requirements, contingents };
         network.validate(&mut errors);
         if errors.is_empty() { Ok(network) } else { Err(errors) }
     }
@@ -220,6 +215,19 @@ impl Network {
         self.contingents[link].to = new;
         self.link_of[ours.index()] = None;
         self.link_of.push(Some(link as u32));
+    }
+
+    /// The same events with other constraints.
+    ///
+    /// # Errors
+    /// Everything that is wrong with those.
+    pub fn with(
+        &self,
+        requirements: Vec<Requirement>,
+        contingents: Vec<ContingentLink>,
+    ) -> Result<Network, Vec<ModelError>> {
+        let (name, events) = (self.name.clone(), self.events.clone());
+        Network::valid(name, self.origin, events, requirements, contingents, Vec::new())
     }
 
     /// The ids of all events, in order.

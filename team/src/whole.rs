@@ -71,14 +71,8 @@ impl Whole {
     pub(crate) fn network(&self) -> Network {
         let merged = &self.merged.network;
         let requirements = self.sides.iter().map(Side::requirement).collect();
-        Network::new(
-            merged.name().to_string(),
-            merged.origin(),
-            merged.events().to_vec(),
-            requirements,
-            merged.contingents().to_vec(),
-        )
-        .unwrap_or_else(|errors| unreachable!("the bounds of a valid network make one: {errors:?}"))
+        let network = merged.with(requirements, merged.contingents().to_vec());
+        network.unwrap_or_else(|errors| unreachable!("the bounds of a valid network make one: {errors:?}"))
     }
 
     /// True if Nature alone violates no requirement: those that nobody could keep hold by themselves. Only a "no" that is too careful
@@ -90,13 +84,7 @@ impl Whole {
         };
         let merged = &self.merged.network;
         let requirements = self.sides.iter().filter(|side| nobody(side.from) && nobody(side.to));
-        let alone = Network::new(
-            merged.name().to_string(),
-            merged.origin(),
-            merged.events().to_vec(),
-            requirements.map(Side::requirement).collect(),
-            merged.contingents().to_vec(),
-        );
+        let alone = merged.with(requirements.map(Side::requirement).collect(), merged.contingents().to_vec());
         alone.is_ok_and(|alone| check(&alone) == Ok(Verdict::Controllable))
     }
 

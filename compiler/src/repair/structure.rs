@@ -179,8 +179,7 @@ fn loosened(network: &Network, origins: &Origins, steps: &BTreeSet<Step>) -> Opt
         }
     };
     let requirements = network.requirements().iter().zip(&origins.requirements).map(loose).collect();
-    let (events, links) = (network.events().to_vec(), network.contingents().to_vec());
-    Network::new(network.name().to_string(), network.origin(), events, requirements, links).ok()
+    network.with(requirements, network.contingents().to_vec()).ok()
 }
 
 /// Slack for the form whose first word is at a place.

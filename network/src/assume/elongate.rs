@@ -56,8 +56,8 @@ pub(super) fn elongate(network: &Network) -> Result<Elongated, TooLarge> {
             sides.push(Side { part, from, to });
         }
     }
-    let events = network.events().to_vec();
-    let elongated = Network::new(network.name().to_string(), network.origin(), events, requirements, links)
+    let elongated = network
+        .with(requirements, links)
         .unwrap_or_else(|errors| unreachable!("an elongated network is valid: {errors:?}"));
     Ok(Elongated { network: elongated, sides })
 }

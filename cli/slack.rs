@@ -187,7 +187,7 @@ impl Left {
         let mut lines = vec![String::new(), format!("{:>12}  {:>10}  {:<22}  what", "room", "now", "may be")];
         for Measured { slack, what, place, side } in &self.bounds {
             // News that comes at once is among the news.
-            if *side == Side::MaxDelay && slack.value == Bound::Finite(Duration::ZERO) {
+            if *side == Side::MaxDelay && slack.value == Bound::ZERO {
                 continue;
             }
             let room = slack.room.map_or("any".to_string(), |room| format!("{room} s"));

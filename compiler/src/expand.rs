@@ -143,7 +143,7 @@ impl<'a> Expander<'a> {
                 });
             }
             let delay = self.interval(&timing.delay, frame, Limits::ObservationDelay);
-            if delay.lower != Duration::ZERO || delay.upper != Bound::Finite(Duration::ZERO) {
+            if delay.lower != Duration::ZERO || delay.upper != Bound::ZERO {
                 episode.delay = Some(delay);
             }
         }

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use kirk_network::{Bound, ContingentLink, Delay, Duration, Event, EventId, Name, Network, Requirement};
+use kirk_network::{Bound, ContingentLink, Delay, Event, EventId, Name, Network, Requirement};
 
 use crate::episode::{Constraint, Episode, EventOf, Kind, Range};
 use crate::origins::{Origin, OriginKind, Origins, Point, Statement, Subject};
@@ -136,9 +136,8 @@ impl Lowering {
     }
 
     fn link(&mut self, (from, to): Ends, kind: OriginKind, episode: &Episode, says: Statement) {
-        let zero = Bound::Finite(Duration::ZERO);
-        let upper = if kind.is_join() { zero } else { Bound::Infinite };
-        self.requirements.push(Requirement { from, to, lower: zero, upper });
+        let upper = if kind.is_join() { Bound::ZERO } else { Bound::Infinite };
+        self.requirements.push(Requirement { from, to, lower: Bound::ZERO, upper });
         let (subject, names) = (subject(episode), names_of(episode));
         let span = episode.span;
         self.origins.requirements.push(Origin { span, kind, says, subject, names, places: [span; 4] });

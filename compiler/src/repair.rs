@@ -232,9 +232,8 @@ pub fn proposals(
 
 /// True if something that takes time is to take none.
 fn takes_no_time(repair: &Repair) -> bool {
-    let zero = Bound::Finite(Duration::ZERO);
     let is_least = |change: &Change| matches!(change.knob.parts()[0], Part::RequirementLower(_));
-    repair.changes.iter().any(|change| change.to == zero && is_least(change))
+    repair.changes.iter().any(|change| change.to == Bound::ZERO && is_least(change))
 }
 
 /// An amount in the unit that is written at a place.
@@ -302,7 +301,7 @@ fn is_changeable(part: Part, network: &Network, origin: &Origin, sources: &[Sour
     let Some(knob) = Knob::of(part) else { return false };
     let is_there = match part {
         // News that comes at once cannot come sooner.
-        Part::DelayMax(_) => knob.value(network) != Bound::Finite(Duration::ZERO),
+        Part::DelayMax(_) => knob.value(network) != Bound::ZERO,
         _ => knob.value(network) != Bound::Infinite,
     };
     let by_itself = match origin.kind {

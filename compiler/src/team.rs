@@ -88,8 +88,7 @@ pub(crate) fn faults(team: &Team, network: &Network, origins: &Origins) -> Vec<P
     let mut joined: Vec<Vec<(EventId, usize)>> = vec![Vec::new(); network.events().len()];
     for (index, requirement) in network.requirements().iter().enumerate() {
         let ends = [requirement.from, requirement.to];
-        let zero = Bound::Finite(Duration::ZERO);
-        if (requirement.lower, requirement.upper) == (zero, zero) {
+        if requirement.is_join() {
             joined[ends[0].index()].push((ends[1], index));
             joined[ends[1].index()].push((ends[0], index));
         }

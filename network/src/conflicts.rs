@@ -9,9 +9,9 @@ use std::collections::BTreeSet;
 
 use crate::check::{Verdict, check};
 use crate::conflict::{Conflict, Part};
-use crate::model::{Network, Requirement};
+use crate::model::Network;
 use crate::stnu::TooLarge;
-use crate::time::{Bound, Duration};
+use crate::time::Bound;
 
 /// The conflicts, those of fewest members first, at most so many; none if the network is controllable. No bound of a
 /// requirement is in two of them, unless it is [0, 0].
@@ -45,8 +45,6 @@ pub fn without<'a>(network: &Network, conflicts: impl IntoIterator<Item = &'a Co
 
 /// Puts the bounds of ours that are in a conflict out of the way, or if there are none, what is Nature's.
 fn loosen(network: &mut Network, conflict: &Conflict) {
-    let zero = Bound::Finite(Duration::ZERO);
-    let joins = |it: &Requirement| (it.lower, it.upper) == (zero, zero);
     let parts = || conflict.members.iter().map(|share| share.part);
     // What joins is known before any of it is changed.
     let ours: Vec<(usize, bool)> = parts()
@@ -55,7 +53,7 @@ fn loosen(network: &mut Network, conflict: &Conflict) {
             Part::RequirementUpper(index) => Some((index, false)),
             _ => None,
         })
-        .filter(|&(index, _)| !joins(&network.requirements()[index]))
+        .filter(|&(index, _)| !network.requirements()[index].is_join())
         .collect();
     for &(index, is_lower) in &ours {
         let requirement = network.requirement_mut(index);

@@ -11,7 +11,7 @@ use petgraph::unionfind::UnionFind;
 
 use crate::conflict::{Conflict, Part, Share};
 use crate::model::{ContingentLink, Event, EventId, ModelError, Name, Network, Requirement};
-use crate::time::{Bound, Duration};
+use crate::time::Duration;
 
 /// A network in which no [0, 0] requirement is left that could be merged away, and the way back to the one it is from.
 #[derive(Clone, Debug)]
@@ -62,9 +62,7 @@ fn merge_with(
     let mut classes = Classes::new(network);
     let mut tree: Vec<Vec<Join>> = vec![Vec::new(); count];
     for (index, requirement) in network.requirements().iter().enumerate() {
-        let zero = Bound::Finite(Duration::ZERO);
-        if requirement.lower == zero
-            && requirement.upper == zero
+        if requirement.is_join()
             && !apart.contains(&index)
             && (caution == Caution::Quick || !classes.would_close_a_cycle(network, requirement))
             && classes.join(requirement.from, requirement.to)

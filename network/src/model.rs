@@ -57,6 +57,11 @@ pub struct Requirement {
 }
 
 impl Requirement {
+    /// True if it says that its events are one.
+    pub fn is_join(&self) -> bool {
+        (self.lower, self.upper) == (Bound::ZERO, Bound::ZERO)
+    }
+
     /// What it says as edges `(a, b, weight)` of a distance graph, `b - a <= weight`: that of the upper bound, then that of
     /// the lower one; `None` for a bound that is infinite.
     pub fn edges(&self) -> [Option<(EventId, EventId, Duration)>; 2] {
@@ -92,7 +97,7 @@ pub struct Delay {
 
 impl Delay {
     /// Observed the moment it happens.
-    pub const NONE: Delay = Delay { min: Duration::ZERO, max: Bound::Finite(Duration::ZERO) };
+    pub const NONE: Delay = Delay { min: Duration::ZERO, max: Bound::ZERO };
 }
 
 /// A delay STNU. Valid: names are unique, every contingent event ends one link, links form no cycle, bounds are in order.

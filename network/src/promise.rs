@@ -4,7 +4,7 @@ use crate::conflict::Part;
 use crate::model::{EventId, Network};
 use crate::slack::hardest_yes;
 use crate::stnu::TooLarge;
-use crate::time::{Bound, Duration, Time};
+use crate::time::{Bound, Time};
 use crate::vary::{Knob, Probe};
 
 /// What can be promised of the time of one event, each alone, all else as it is.
@@ -58,7 +58,7 @@ pub fn latest_start(network: &Network, event: EventId) -> Result<Option<Bound>, 
     }
     let requirement = probe.require_time_of(event);
     let latest = |requirement| farthest(&mut probe, Part::RequirementLower(requirement));
-    Ok(Some(requirement.map_or(Bound::Finite(Duration::ZERO), latest)))
+    Ok(Some(requirement.map_or(Bound::ZERO, latest)))
 }
 
 /// How far a side that has no value yet can be bounded.

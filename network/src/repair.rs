@@ -258,7 +258,7 @@ fn cheapest(search: &mut Search<'_>, known: Vec<Turns>, limit: usize) -> Vec<Tur
 pub fn ours(network: &Network) -> Vec<Knob> {
     let is_ours = |knob: &Knob| match knob.parts()[0] {
         Part::RequirementLower(_) | Part::RequirementUpper(_) => true,
-        Part::DelayMax(_) => knob.value(network) != Bound::Finite(Duration::ZERO),
+        Part::DelayMax(_) => knob.value(network) != Bound::ZERO,
         _ => false,
     };
     bounds(network).into_iter().filter(is_ours).map(|knob| knob.in_its_sense(network)).collect()

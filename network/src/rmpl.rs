@@ -144,9 +144,8 @@ impl Writer<'_> {
     }
 
     fn requirement(&mut self, from: EventId, to: EventId, lower: Bound, upper: Bound) {
-        let zero = Bound::Finite(Duration::ZERO);
         // Nothing comes before the origin anyway.
-        if from == self.network.origin() && lower == zero && upper == Bound::Infinite {
+        if from == self.network.origin() && lower == Bound::ZERO && upper == Bound::Infinite {
             return;
         }
         let address = |event: EventId| self.addresses[event.index()].clone();

@@ -238,6 +238,9 @@ fn unsigned(number: &str) -> &str {
 }
 
 impl Bound {
+    /// No time at all.
+    pub const ZERO: Bound = Bound::Finite(Duration::ZERO);
+
     /// The finite value, if there is one.
     pub fn finite(self) -> Option<Duration> {
         match self {

@@ -159,8 +159,7 @@ impl Team {
                 let event = self.network.label(requirement.to).to_string();
                 errors.push(TeamError::Unreachable { requirement: index, from, to, event });
             }
-            let zero = Bound::Finite(Duration::ZERO);
-            if (requirement.lower, requirement.upper) == (zero, zero) {
+            if requirement.is_join() {
                 errors.extend(self.same_moment(index, ends).or(self.same_moment(index, [ends[1], ends[0]])));
             }
         }

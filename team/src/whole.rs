@@ -123,9 +123,8 @@ impl Side {
 /// The [0, 0] requirements between events of two owners, neither of which is tied to the origin.
 fn across_agents(team: &Team) -> BTreeSet<usize> {
     let network = team.network();
-    let zero = Bound::Finite(Duration::ZERO);
     let joins: Vec<(usize, EventId, EventId)> = (network.requirements().iter().enumerate())
-        .filter(|(_, it)| (it.lower, it.upper) == (zero, zero))
+        .filter(|(_, it)| it.is_join())
         .map(|(index, it)| (index, it.from, it.to))
         .collect();
     let mut tied = vec![false; network.events().len()];

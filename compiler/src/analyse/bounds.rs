@@ -14,7 +14,7 @@ impl Analyser<'_> {
     /// How long the primitive program at hand takes.
     pub(super) fn timing(&mut self) -> Timing {
         let definition = self.definition;
-        let nothing = |span| Amount { value: AmountValue::Known(Bound::Finite(Duration::ZERO)), span };
+        let nothing = |span| Amount { value: AmountValue::Known(Bound::ZERO), span };
         let Some(duration) = &definition.duration else {
             let span = definition.name.span;
             let upper = Amount { value: AmountValue::Known(Bound::Infinite), span };
@@ -71,7 +71,7 @@ impl Resolver<'_> {
 
     /// Resolves both bounds.
     pub(super) fn signed_bounds(&mut self, written: &ast::Bounds, limits: Limits) -> Bounds {
-        let (zero, low) = (Bound::Finite(Duration::ZERO), Role::Lower(limits));
+        let (zero, low) = (Bound::ZERO, Role::Lower(limits));
         let lower = self.bound(written.lower.as_ref(), zero, written.span, low);
         let upper = self.bound(written.upper.as_ref(), Bound::Infinite, written.span, Role::Upper(limits));
         let bounds = Bounds { lower, upper, span: written.span };
@@ -113,8 +113,8 @@ impl Resolver<'_> {
     pub(super) fn delay(&mut self, written: &ast::Bounds, limits: Limits) -> Bounds {
         let mut bounds = self.bounds(written, limits);
         if written.upper.is_none() {
-            bounds.upper.value = AmountValue::Known(Bound::Finite(Duration::ZERO));
-            if !bounds.lower.value.is(Bound::Finite(Duration::ZERO)) {
+            bounds.upper.value = AmountValue::Known(Bound::ZERO);
+            if !bounds.lower.value.is(Bound::ZERO) {
                 self.problems.push(Problem::NoLongestDelay { limits, delay: written.span });
             }
         }

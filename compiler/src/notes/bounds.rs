@@ -24,13 +24,12 @@ fn longest<'a>(episode: &'a Episode, notes: &mut Vec<Problem<'a>>) -> Bound {
 
 /// How long Nature alone may make an episode take.
 fn forced(episode: &Episode) -> Bound {
-    let zero = Bound::Finite(Duration::ZERO);
     let inside = episode.parts.iter().map(forced);
     match (episode.kind, &episode.duration) {
         (Kind::Primitive, Some(duration)) if episode.contingent => duration.upper,
-        (Kind::Primitive | Kind::Delay, _) => zero,
-        (Kind::Parallel, _) => inside.reduce(most).unwrap_or(zero),
-        (Kind::Program | Kind::Sequence | Kind::WithTemporalConstraint, _) => inside.fold(zero, sum),
+        (Kind::Primitive | Kind::Delay, _) => Bound::ZERO,
+        (Kind::Parallel, _) => inside.reduce(most).unwrap_or(Bound::ZERO),
+        (Kind::Program | Kind::Sequence | Kind::WithTemporalConstraint, _) => inside.fold(Bound::ZERO, sum),
     }
 }
 
@@ -47,10 +46,8 @@ fn allowed<'a>(episode: &'a Episode, notes: &mut Vec<Problem<'a>>) -> Bound {
         Kind::Delay => return own,
         _ if slack => Bound::Infinite,
         // Without slack, the parts of a parallel all take the same time.
-        Kind::Parallel => inside.reduce(least).unwrap_or(Bound::Finite(Duration::ZERO)),
-        Kind::Program | Kind::Sequence | Kind::WithTemporalConstraint => {
-            inside.fold(Bound::Finite(Duration::ZERO), sum)
-        }
+        Kind::Parallel => inside.reduce(least).unwrap_or(Bound::ZERO),
+        Kind::Program | Kind::Sequence | Kind::WithTemporalConstraint => inside.fold(Bound::ZERO, sum),
     };
     if let (Kind::WithTemporalConstraint, Some(duration), Bound::Finite(most)) =
         (episode.kind, &episode.duration, parts)

@@ -7,7 +7,7 @@ use kirk_network::least::could_settle;
 use kirk_network::repair::Repair;
 use kirk_network::stnu::TooLarge;
 use kirk_network::vary::{self, Change};
-use kirk_network::{Bound, Conflict, Duration, Network, Part, Requirement};
+use kirk_network::{Bound, Conflict, Network, Part, Requirement};
 
 use super::{ChangeKind, Changed, Loosening, Wishes, is_called};
 use crate::diagnostic::{Edit, Text};
@@ -140,9 +140,8 @@ fn joins(conflict: &Conflict, network: &Network, origins: &Origins) -> BTreeSet<
 
 /// The orders a conflict may rest on: what only says that something comes after something else.
 fn orders(conflict: &Conflict, network: &Network, origins: &Origins) -> BTreeSet<Span> {
-    let order = |requirement: &Requirement| {
-        requirement.lower == Bound::Finite(Duration::ZERO) && requirement.upper == Bound::Infinite
-    };
+    let order =
+        |requirement: &Requirement| requirement.lower == Bound::ZERO && requirement.upper == Bound::Infinite;
     spans(conflict, network, origins, |origin, requirement| {
         origin.kind == OriginKind::Between && order(requirement)
     })

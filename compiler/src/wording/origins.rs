@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use kirk_network::{Bound, Delay, Duration};
+use kirk_network::{Bound, Delay};
 
 use crate::origins::{Origin, OriginKind, Point, Side, Statement, Subject};
 
@@ -87,11 +87,13 @@ impl Origin {
 
     fn passes(&self, least: Bound, most: Bound, news: Option<Delay>) -> String {
         let Origin { kind, subject, .. } = self;
-        let (range, zero) = (range(least, most), Bound::Finite(Duration::ZERO));
+        let range = range(least, most);
         match (kind, subject) {
             (OriginKind::Between, _) => format!("{range} {subject}"),
             (OriginKind::Constraint, _) => format!("this takes {range} from start to end"),
-            (OriginKind::Requirement, Subject::Reach(ends)) if least == zero && most == zero => {
+            (OriginKind::Requirement, Subject::Reach(ends))
+                if (least, most) == (Bound::ZERO, Bound::ZERO) =>
+            {
                 format!("{} and {} are one event", ends[0], ends[1])
             }
             (OriginKind::Requirement, _) => format!("{} {subject}", entry(least, most)),
@@ -154,7 +156,7 @@ fn entry(least: Bound, most: Bound) -> String {
 fn range(least: Bound, most: Bound) -> String {
     match (least, most) {
         (least, Bound::Finite(most)) if least == Bound::Finite(most) => format!("{most} s"),
-        (Bound::Finite(Duration::ZERO), most) => entry(Bound::Infinite, most),
+        (Bound::ZERO, most) => entry(Bound::Infinite, most),
         _ => entry(least, most),
     }
 }

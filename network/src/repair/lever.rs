@@ -126,7 +126,5 @@ pub(super) fn roots(network: &Network) -> Vec<EventId> {
 
 /// True if a requirement says that two events are one.
 pub(super) fn joins(network: &Network, requirement: usize) -> bool {
-    let requirement = network.requirements()[requirement];
-    let zero = Bound::Finite(Duration::ZERO);
-    requirement.lower == zero && requirement.upper == zero
+    network.requirements()[requirement].is_join()
 }

@@ -324,14 +324,7 @@ pub(crate) fn is_finite(position: i64) -> bool {
 
 /// True if the part is of a requirement that says that two events are one.
 fn joins(network: &Network, part: Part) -> bool {
-    match part {
-        Part::RequirementUpper(index) | Part::RequirementLower(index) => {
-            let Requirement { lower, upper, .. } = network.requirements()[index];
-            let zero = Bound::Finite(Duration::ZERO);
-            lower == zero && upper == zero
-        }
-        _ => false,
-    }
+    part.requirement().is_some_and(|index| network.requirements()[index].is_join())
 }
 
 /// The verdict on a merged network.

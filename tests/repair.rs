@@ -87,9 +87,44 @@ fn what_is_kept_is_not_touched_and_what_is_dear_comes_last() {
         "{}",
         first(&["--weight", "warm-up=4"])
     );
-    assert_eq!(first(&["--keep", "warm-up", "--keep", "arrive"]), "");
-    let nature = first(&["--keep", "warm-up", "--keep", "hand-over", "--nature"]);
+    assert_eq!(first(&["--keep", "warm-up", "--keep", "between"]), "");
+    let nature = first(&["--keep", "warm-up", "--keep", "between", "--nature"]);
     assert!(nature.starts_with("Nature taking at "), "{nature}");
+}
+
+#[test]
+fn an_order_is_left_out_whatever_it_leaves_between_and_of_a_file_by_hand() {
+    let told = |mission: &str| stdout(&kirk_with_input(&["repair", "-"], mission.as_bytes()));
+    let program = |name: &str| {
+        format!(
+            "(define-control-program {name} () (declare (primitive) (duration (simple :lower-bound 10 :upper-bound 20))))"
+        )
+    };
+    let orders = "(define-control-program main () (sequence (:slack t) (a) (b)
+        (between (end b) (start a) (simple-temporal :lower-bound 5))))";
+    let mission = program("a") + &program("b") + orders;
+    assert!(
+        told(&mission).contains("1  without the order from the end of `b` to the start of `a`"),
+        "{}",
+        told(&mission)
+    );
+    let network = r#"{"format": "kirk-network/1", "origin": "z", "events": ["z", "a", "b"],
+        "requirements": [{"from": "a", "to": "b", "lower": 1}, {"from": "b", "to": "a", "lower": 1}],
+        "contingents": [{"from": "z", "to": "a", "lower": 1, "upper": 2}]}"#;
+    let told = told(network);
+    assert!(told.contains("without the order") && told.contains("by hand"), "{told}");
+}
+
+#[test]
+fn a_shortest_delay_that_follows_is_told() {
+    let mission = "(define-control-program etch () (declare (primitive) (duration
+        (simple :lower-bound 30 :upper-bound 60 :min-observation-delay 10 :max-observation-delay 20) :contingent t)))
+      (define-control-program rinse () (declare (primitive) (duration (simple :lower-bound 5 :upper-bound 10))))
+      (define-control-program main () (parallel (:slack t) (sequence (:slack t) (etch) (rinse))
+        (between (end etch) (start rinse) (simple-temporal :upper-bound 5))))";
+    let told = stdout(&kirk_with_input(&["repair", "-"], mission.as_bytes()));
+    let first = "1  news of the end of `etch` within 5 s instead of 20 s, and its shortest delay with it";
+    assert!(told.contains(first), "{told}");
 }
 
 #[test]

@@ -107,13 +107,12 @@ impl Lowering {
                 true => (*end, Point::End(called(episode))),
                 false => (*start, Point::Start(called(episode))),
             };
-            Some((at, point, names_of(episode)))
+            Some((at, point))
         };
         for Constraint { from, to, interval } in &root.constraints {
-            let (Some((from, before, mut names)), Some((to, after, others))) = (find(from), find(to)) else {
+            let (Some((from, before)), Some((to, after))) = (find(from), find(to)) else {
                 continue;
             };
-            names.extend(others);
             let Range { lower, upper, lower_span, upper_span, span } = *interval;
             self.requirements.push(Requirement { from, to, lower: Bound::Finite(lower), upper });
             self.origins.requirements.push(Origin {
@@ -121,7 +120,8 @@ impl Lowering {
                 kind: OriginKind::Between,
                 says: Statement::Passes { least: lower.into(), most: upper, news: None },
                 subject: Subject::Reach(Box::new([before, after])),
-                names,
+                // What lies between two activities is neither.
+                names: vec!["between".to_string()],
                 places: [lower_span, upper_span, span, span],
             });
         }

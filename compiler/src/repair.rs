@@ -203,7 +203,10 @@ pub fn proposals(
     let of_amounts = |repairs: Vec<&Repair>| -> Vec<Proposal> {
         repairs.into_iter().filter_map(|it| proposal(&it.changes)).collect()
     };
-    let mut found = of_amounts(some);
+    // One change first.
+    let (single, joint) = some.into_iter().partition(|it| it.changes.len() == 1);
+    let mut found = of_amounts(single);
+    found.extend(of_amounts(joint));
     let amounts = |loose: &Network, limit: usize| -> Result<Vec<Repair>, TooLarge> {
         let options = Options { limit, rounds: options.rounds.min(FEW), patience: options.patience.min(FEW) };
         Ok(kirk_network::repair::repairs(loose, &allowed, &options)?.map_or(Vec::new(), |it| it.repairs))

@@ -7,12 +7,12 @@ use kirk_network::least::could_settle;
 use kirk_network::repair::Repair;
 use kirk_network::stnu::TooLarge;
 use kirk_network::vary::{self, Change};
-use kirk_network::{Bound, Conflict, Network, Part, Requirement};
+use kirk_network::{Bound, Conflict, Duration, Network, Part, Requirement};
 
 use super::{ChangeKind, Changed, Loosening, Wishes, is_called};
 use crate::diagnostic::{Edit, Text};
 use crate::form::Form;
-use crate::origins::{Origin, OriginKind, Origins};
+use crate::origins::{Origin, OriginKind, Origins, Side};
 use crate::problem::Problems;
 use crate::read::read;
 use crate::source::{Source, Span};
@@ -112,16 +112,21 @@ fn changed(
     let kept = |origin: &Origin| wishes.keep.iter().any(|name| is_called(origin, name));
     let of_form = |origin: &&Origin| origin.span == span && loosening.concerns(origin.kind);
     let origin = origins.requirements.iter().filter(of_form).find(|origin| !kept(origin))?;
-    let edit = loosening.edit(span, sources)?;
+    let edits = match origin.kind {
+        // An entry is not taken out of a file; nor is what does not stand by itself.
+        OriginKind::Requirement if origins.requirements.iter().filter(of_form).count() > 1 => return None,
+        OriginKind::Requirement => Vec::new(),
+        _ => vec![loosening.edit(span, sources)?],
+    };
     let change = ChangeKind::Loosened(loosening);
-    Some(Changed { change, origin: origin.clone(), place: span, edits: vec![edit] })
+    Some(Changed { change, origin: origin.clone(), place: span, edits })
 }
 
 impl Loosening {
     fn concerns(self, kind: OriginKind) -> bool {
         match self {
             Loosening::Slack => matches!(kind, OriginKind::Join | OriginKind::SideBySide),
-            Loosening::Order => kind == OriginKind::Between,
+            Loosening::Order => matches!(kind, OriginKind::Between | OriginKind::Requirement),
         }
     }
 
@@ -140,10 +145,16 @@ fn joins(conflict: &Conflict, network: &Network, origins: &Origins) -> BTreeSet<
 
 /// The orders a conflict may rest on: what only says that something comes after something else.
 fn orders(conflict: &Conflict, network: &Network, origins: &Origins) -> BTreeSet<Span> {
-    let order =
-        |requirement: &Requirement| requirement.lower == Bound::ZERO && requirement.upper == Bound::Infinite;
-    spans(conflict, network, origins, |origin, requirement| {
-        origin.kind == OriginKind::Between && order(requirement)
+    let follows = |it: &Requirement| it.lower.finite().is_some_and(|lower| lower >= Duration::ZERO);
+    let precedes = |it: &Requirement| {
+        it.lower == Bound::Infinite && it.upper.finite().is_some_and(|upper| upper <= Duration::ZERO)
+    };
+    // With an upper bound it is a deadline, unless it says that it is an order, too.
+    let is_written =
+        |origin: &Origin| origin.kind == OriginKind::Between && origin.place(Side::Lower) != origin.span;
+    spans(conflict, network, origins, |origin, it| {
+        let is_order = follows(it) && (it.upper == Bound::Infinite || is_written(origin)) || precedes(it);
+        Loosening::Order.concerns(origin.kind) && is_order
     })
 }
 

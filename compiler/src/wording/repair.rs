@@ -9,7 +9,11 @@ impl Changed {
     /// What it is, as part of a sentence: "at most 45 s instead of 40 s for `drive`".
     pub fn title(&self) -> String {
         match self.change {
-            ChangeKind::Amount { part, from, to, unit } => amount(part, (from, to), &self.origin, unit),
+            ChangeKind::Amount { part, from, to, unit } => {
+                // A shortest delay follows a longest one that becomes less.
+                let also = if self.edits.len() > 1 { ", and its shortest delay with it" } else { "" };
+                amount(part, (from, to), &self.origin, unit) + also
+            }
             ChangeKind::Loosened(Loosening::Slack) => {
                 format!("slack (`:slack t`) in {}", self.origin.subject.elsewhere())
             }

@@ -191,9 +191,11 @@ fn edit(arguments: &RepairOf, input: &Loaded, found: Option<&Proposals>) -> io::
 }
 
 fn patch(before: &Source, after: &Source) -> String {
+    // After a tab `patch` reads no further, and so takes blanks for a part of the name.
+    let end = if before.name.contains(char::is_whitespace) { "\t" } else { "" };
     let named = |side: &str| match before.name.starts_with('/') {
-        true => before.name.clone(),
-        false => format!("{side}/{}", before.name),
+        true => format!("{}{end}", before.name),
+        false => format!("{side}/{}{end}", before.name),
     };
     TextDiff::from_lines(&before.text, &after.text)
         .unified_diff()

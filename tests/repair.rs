@@ -4,7 +4,9 @@
 mod binary;
 
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 
 use binary::{kirk, kirk_with_input, stderr, stdout};
 use serde_json::{Value, json};
@@ -175,6 +177,22 @@ fn a_patch_says_what_applying_does_and_changes_nothing() {
     let patch = kirk(&["repair", file, "--diff", "--apply", "2"]);
     insta::assert_snapshot!(stdout(&patch));
     assert_eq!(fs::read_to_string(file).unwrap(), before);
+}
+
+#[test]
+fn patch_takes_a_patch_of_a_file_with_blanks_in_its_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("late news.rmpl");
+    fs::copy("tests/rmpl/gallery/late-news.rmpl", &file).unwrap();
+    let patch = stdout(&kirk(&["repair", file.to_str().unwrap(), "--diff"]));
+    let run = Command::new("patch").args(["-p0", "-s"]).current_dir("/").stdin(Stdio::piped()).spawn();
+    let Ok(mut run) = run else {
+        println!("skipped: there is no `patch` here");
+        return;
+    };
+    run.stdin.take().unwrap().write_all(patch.as_bytes()).unwrap();
+    assert!(run.wait().unwrap().success(), "{patch}");
+    assert_eq!(status(&["check", file.to_str().unwrap()]), Some(0));
 }
 
 /// News of `b` is up to 5 s late, and `c` is to come within 3 s of it.

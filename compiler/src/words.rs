@@ -176,7 +176,9 @@ impl Word {
 impl Position {
     /// The words of the forms that stand here.
     pub fn words(self) -> impl Iterator<Item = &'static Word> {
-        WORDS.iter().filter(move |word| word.position == self)
+        // The one word that stands in two places.
+        let is_agent = move |word: &Word| self == Position::Team && word.name == "agent";
+        WORDS.iter().filter(move |word| word.position == self || is_agent(word))
     }
 
     /// Their names.

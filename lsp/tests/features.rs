@@ -582,3 +582,17 @@ fn the_verdict_on_a_team_is_that_on_all_of_its_agents() {
     let hover = hover_at(&marked(&team(15), "(dr^ill))"));
     assert!(hover.contains("starts from") && !hover.contains("guaranteed"), "{hover}");
 }
+
+#[test]
+fn a_team_and_its_agents_are_offered_where_they_stand() {
+    let offered = |marked: &str| -> Vec<String> {
+        let (text, offset) = at(marked);
+        completion(&view(&text).analysis, offset).into_iter().map(|it| it.label).collect()
+    };
+    let mut parts = offered("(define-team crew (^");
+    parts.sort();
+    assert_eq!(parts, ["agent", "link"]);
+    let mut agents = offered("(define-team crew (agent rover) (agent base) (link ^))");
+    agents.sort();
+    assert_eq!(agents, ["base", "rover"]);
+}

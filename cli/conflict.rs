@@ -41,6 +41,7 @@ pub(crate) struct ConflictJson<'a> {
 #[derive(Serialize)]
 struct StepJson<'a> {
     kind: &'static str,
+    times: u32,
     needs: Duration,
     text: &'a str,
 }
@@ -92,8 +93,9 @@ impl<'a> ConflictJson<'a> {
         reporter: &'a Reporter<'_>,
     ) -> ConflictJson<'a> {
         let Told { conflict, story, enough, .. } = told;
-        let step = |StoryStep { part, needs, text }: &'a StoryStep| StepJson {
+        let step = |StoryStep { part, times, needs, text, .. }: &'a StoryStep| StepJson {
             kind: kind(*part),
+            times: *times,
             needs: *needs,
             text,
         };

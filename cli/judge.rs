@@ -163,7 +163,9 @@ impl<'a> CheckJson<'a> {
         delays: Delays,
         reporter: &'a Reporter<'_>,
     ) -> CheckJson<'a> {
-        let conflict = judged.and_then(|judged| judged.conflict.as_ref());
+        // The one that is told first, which lacks what is missing.
+        let told = judged.and_then(|judged| judged.told.first()).map(|told| &told.conflict);
+        let conflict = told.or(judged.and_then(|judged| judged.conflict.as_ref()));
         let merged = judged.map(|judged| &judged.merged);
         let assumed = judged.and_then(|judged| judged.assumed.as_ref());
         let network = assumed.or(input.network.as_ref());

@@ -166,7 +166,10 @@ fn a_no_that_only_an_assumption_makes_is_explained_too() {
         said["message"].as_str().unwrap().ends_with("if durations and delays are one uncertainty"),
         "{said}"
     );
-    assert!(said["help"].as_str().unwrap().contains("That needs 30 s, and 25 s are there."), "{said}");
+    assert!(
+        said["help"].as_str().unwrap().contains("That needs 30 s, and 25 s are there: this way round"),
+        "{said}"
+    );
     let conflicts = checked["conflicts"].as_array().unwrap();
     assert_eq!((&conflicts[0]["members"], &conflicts[0]["enough"]), (&checked["conflict"], &Value::Null));
 }

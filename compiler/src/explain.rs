@@ -1,10 +1,12 @@
 //! A conflict in the words and places of the program: why it cannot be executed in every case.
 
-mod amounts;
+pub(crate) mod amounts;
 pub(crate) mod problem;
 mod story;
 
 pub use story::StoryStep;
+
+use std::collections::BTreeSet;
 
 use kirk_network::conflicts::{conflicts, without};
 use kirk_network::stnu::TooLarge;
@@ -13,9 +15,10 @@ use kirk_network::{Conflict, Duration, Network, Part, Requirement, Share};
 use crate::diagnostic::Diagnostic;
 use crate::lower::Lowered;
 use crate::origins::{OriginKind, Origins, Side};
-use crate::repair::Changed;
+use crate::repair::{ChangeKind, Changed};
 use crate::source::{Source, Span};
 use crate::wording;
+use amounts::Enough;
 use problem::{Kind, Problem, Remedy, Says, Stated};
 use story::steps;
 
@@ -50,7 +53,7 @@ pub struct Told {
     pub diagnostic: Diagnostic,
     /// Step by step, from event to event; nothing if the walk would be too long to tell anything.
     pub story: Vec<StoryStep>,
-    /// The changes of one amount each that settle it, each alone; `None` if the mission is too large to look for them.
+    /// The changes of one amount each that settle it, each alone; `None` if they were not looked for.
     pub enough: Option<Vec<Changed>>,
 }
 
@@ -69,15 +72,20 @@ impl<'a> Explain<'a> {
     pub fn each(&self) -> Result<Vec<Told>, TooLarge> {
         // Each costs a verdict: of large missions no more are looked for than are told.
         let counted = if self.network.events().len() > LARGE { MOST + 1 } else { COUNTED };
-        let found = conflicts(self.network, counted)?;
+        let mut found = conflicts(self.network, counted)?;
         let told = found.len().min(MOST);
         let mut all = Vec::new();
-        for (index, conflict) in found.iter().take(MOST).enumerate() {
+        for index in 0..told {
             // What settles one is seen when the others are out of the way.
             let others = found.iter().enumerate().filter(|(other, _)| *other != index);
             let rest = without(self.network, others.map(|(_, other)| other));
-            let enough = amounts::enough_alone(conflict, self.network, &rest, self.origins, self.sources);
-            all.push(self.told(conflict, enough, found.len() > 1));
+            let enough =
+                amounts::enough_alone(&found[index], self.network, &rest, self.origins, self.sources);
+            // What lacks all that is missing is told, and not what was found first.
+            if let Some(witness) = &enough.witness {
+                found[index] = witness.conflict.clone();
+            }
+            all.push(self.told(&found[index], Some(enough), found.len() > 1));
         }
         if found.len() > told
             && let Some(Told { diagnostic: last, .. }) = all.last_mut()
@@ -102,7 +110,7 @@ impl<'a> Explain<'a> {
     }
 
     /// Words a conflict that these changes settle, each alone.
-    fn told(&self, conflict: &Conflict, enough: Option<Vec<Changed>>, is_one_of_several: bool) -> Told {
+    fn told(&self, conflict: &Conflict, enough: Option<Enough>, is_one_of_several: bool) -> Told {
         let Explain { network, origins, sources, .. } = *self;
         let mut bounds: Vec<Stated<'_>> = Vec::new();
         for stated in conflict.members.iter().filter_map(|share| stated(share, network, origins)) {
@@ -112,18 +120,26 @@ impl<'a> Explain<'a> {
                 bounds.push(stated);
             }
         }
-        let story = steps(conflict, network, origins, sources).unwrap_or_default();
+        let amounts = |enough: &Enough| -> BTreeSet<Part> {
+            let part = |change: &Changed| match change.change {
+                ChangeKind::Amount { part, .. } => Some(part),
+                ChangeKind::Loosened(_) => None,
+            };
+            enough.changes.iter().filter_map(part).collect()
+        };
+        let settling = enough.as_ref().map(amounts).unwrap_or_default();
+        let story = steps(conflict, network, origins, sources, &settling).unwrap_or_default();
         let diagnostic = wording::conflict::told(&Problem {
             explain: *self,
             conflict,
             kind: kind(conflict, network, origins),
             bounds,
             story: &story,
-            enough: enough.as_deref(),
+            enough: enough.as_ref(),
             remedies: remedies(conflict, network, origins, enough.is_some()),
             is_one_of_several,
         });
-        Told { conflict: conflict.clone(), diagnostic, story, enough }
+        Told { conflict: conflict.clone(), diagnostic, story, enough: enough.map(|enough| enough.changes) }
     }
 }
 
@@ -145,19 +161,15 @@ fn kind(conflict: &Conflict, network: &Network, origins: &Origins) -> Kind {
     }
 }
 
-/// True if every step leads on, and none back.
+/// True if every step leads on, and none back. A bound that is below zero leads the other way.
 fn is_circle(conflict: &Conflict) -> bool {
-    let leads_back = |part| {
-        matches!(
-            part,
-            Part::RequirementUpper(_)
-                | Part::LinkLower(_)
-                | Part::DelayMin(_)
-                | Part::Join(_)
-                | Part::AfterOrigin
-        )
+    let leads_back = |share: &Share| match share.part {
+        Part::RequirementLower(_) => share.amount > Duration::ZERO,
+        Part::RequirementUpper(_) => share.amount >= Duration::ZERO,
+        Part::LinkLower(_) | Part::DelayMin(_) | Part::Join(_) | Part::AfterOrigin => true,
+        Part::LinkUpper(_) | Part::DelayMax(_) => false,
     };
-    !conflict.members.iter().any(|share| leads_back(share.part))
+    !conflict.members.iter().any(leads_back)
 }
 
 /// What might settle a conflict; of the amounts only if it is not known which are enough.

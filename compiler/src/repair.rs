@@ -23,6 +23,7 @@ use crate::source::{Source, Span};
 pub use crate::wording::repair::what;
 use crate::written::{Written, written};
 pub use edit::Unit;
+pub(crate) use edit::unit;
 use structure::Restructured;
 pub use structure::slack;
 
@@ -129,6 +130,12 @@ impl Changed {
             ChangeKind::Amount { from, to, .. } => Some((from, to)),
             ChangeKind::Loosened(_) => None,
         }
+    }
+
+    /// By how much an amount changes, in words; nothing if that is without end, or it is no amount.
+    pub(crate) fn amount_changed(&self) -> Option<String> {
+        let ChangeKind::Amount { from, to, unit, .. } = self.change else { return None };
+        Some(unit.say(to.finite()?.checked_sub(from.finite()?)?.abs()))
     }
 
     /// The change of the source, if it can be made there.

@@ -98,6 +98,7 @@ mod trees;
 pub mod vary;
 pub mod walk;
 pub mod windows;
+pub mod witness;
 
 pub use check::{Verdict, check};
 pub use conflict::{Conflict, Part, Share};

@@ -1,7 +1,7 @@
 //! How the plan treats the news of each contingent event: when it is acted on, or why it is not waited for.
 
 use crate::merge::merge;
-use crate::model::{Delay, Network};
+use crate::model::{ContingentLink, Delay, Network};
 use crate::reduce::reduce;
 use crate::time::Duration;
 
@@ -25,7 +25,7 @@ pub fn treatments(network: &Network) -> Vec<Treatment> {
     for link in &reduction.stnu.links {
         link_at[link.contingent as usize] = Some(link);
     }
-    let treatment = |contingent: &crate::model::ContingentLink| {
+    let treatment = |contingent: &ContingentLink| {
         let place = reduction.places[contingent.to.index()];
         let heard = match contingent.delay {
             Delay::NONE => "heard at once".to_string(),
@@ -56,4 +56,17 @@ pub fn treatments(network: &Network) -> Vec<Treatment> {
         Treatment { event: merged.label(contingent.to).to_string(), heard, how }
     };
     merged.contingents().iter().map(treatment).collect()
+}
+
+/// For each contingent link whether its news is late and tells nothing of when its end was: it may never come, or be so much later at one
+/// time than at another. All false if Nature alone can violate a constraint.
+pub fn untold(network: &Network) -> Vec<bool> {
+    let merged = merge(network).network;
+    let reduction = reduce(&merged);
+    let is_untold = |link: &ContingentLink| {
+        let place = reduction.as_ref().ok().map(|reduction| reduction.places[link.to.index()]);
+        link.delay != Delay::NONE
+            && place.is_some_and(|place| place.heard_by.is_none() && place.earliest != place.latest)
+    };
+    merged.contingents().iter().map(is_untold).collect()
 }

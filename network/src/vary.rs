@@ -124,6 +124,13 @@ impl Change {
         let by = self.to.finite()?.checked_sub(self.from.finite()?)?;
         Some(Duration::from_micros(by.as_micros().saturating_abs()))
     }
+
+    /// The value a microsecond harder than the one it is to have; `None` if that is infinite.
+    pub(crate) fn just_before(&self) -> Option<Bound> {
+        let part = *self.knob.parts().first()?;
+        self.to.finite()?;
+        Some(axis::value_at(part, axis::position(part, self.to) - 1))
+    }
 }
 
 /// The network with several knobs turned, one after the other; `None` if that is no network.

@@ -22,7 +22,7 @@ pub struct Step {
 }
 
 /// A longer walk tells nobody anything.
-const LONGEST: i64 = 200;
+const LONGEST: i64 = 5_000;
 
 /// The walk of a conflict of a network, not merged. It ends with the step that allows most; what it needs adds up to what the
 /// conflict lacks. `None` if it is very long.

@@ -10,6 +10,7 @@ use kirk_network::least::{could_settle, least_changes};
 use kirk_network::merge::merge;
 use kirk_network::slack::bounds;
 use kirk_network::vary::{Change, Knob};
+use kirk_network::witness::witness;
 use kirk_network::{Bound, Delay, Duration, Network, Part, Verdict, check, json};
 use oracle::random::{self, Random, Shape};
 use oracle::{closure, game};
@@ -182,6 +183,50 @@ fn what_could_settle_a_conflict_is_all_that_can_settle_it_alone() {
         }
     }
     assert!(helps > 500 && left_out > 500, "{helps} help, {left_out} are no candidates");
+}
+
+#[test]
+fn a_witness_lacks_what_the_change_is_and_its_members_alone_are_a_conflict() {
+    let shapes = [Shape::tiny_delayed(), Shape::tiny_delayed().chained(), Shape::medium()];
+    let (mut changed, mut found) = (0, 0);
+    for seed in 0..cases(1500) {
+        let network = random::network(seed, &shapes[(seed % 3) as usize]);
+        if controllable(&network) {
+            continue;
+        }
+        for change in changes(&network).into_iter().filter_map(|(_, change)| change) {
+            let Some(amount) = change.amount() else { continue };
+            changed += 1;
+            let Some(it) = witness(&network, &change).unwrap() else { continue };
+            found += 1;
+            let describe = || format!("seed {seed}, {change:?}, {it:?} of\n{}", random::describe(&network));
+            let sum: i64 = it.conflict.members.iter().map(|share| share.amount.as_micros()).sum();
+            assert_eq!(sum, it.conflict.total.as_micros(), "{}", describe());
+            for share in it.conflict.members.iter().filter(|share| share.times > 0) {
+                let bound = share.part.bound(&network).as_micros() * i64::from(share.times);
+                assert_eq!(share.amount.as_micros().abs(), bound.abs(), "{}", describe());
+            }
+            let (times, missing) = (i64::from(it.times), -sum);
+            assert_eq!((missing + times - 1) / times, amount.as_micros(), "{}", describe());
+            // What is no member may leave all the time there is.
+            let mut rest = network.clone();
+            for knob in bounds(&network) {
+                let part = knob.parts()[0];
+                let is_ours = matches!(part, Part::RequirementLower(_) | Part::RequirementUpper(_));
+                let is_member = it.conflict.members.iter().any(|share| match share.part {
+                    Part::Join(index) => {
+                        part == Part::RequirementLower(index) || part == Part::RequirementUpper(index)
+                    }
+                    member => member == part,
+                });
+                if is_ours && !is_member {
+                    rest = knob.at(&rest, Bound::Infinite).unwrap();
+                }
+            }
+            assert!(!controllable(&rest), "{}", describe());
+        }
+    }
+    assert!(found > 300 && found * 2 > changed, "{found} of {changed}");
 }
 
 #[test]

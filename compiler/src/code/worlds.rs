@@ -101,13 +101,20 @@ pub(super) const NOT_CONTROLLABLE: Page = Page {
 bounds that do not go together and tells, step by step, what is needed and who decides it, and what is there. At
 least one of them has to change: a longer deadline, a shorter activity, a narrower contingent duration, news that
 comes sooner, or slack where two events are forced together. Conflicts that have no bound of ours in common are
-told each by itself, up to ten of them. What is needed and what is there is one way round; more than the
-difference may be missing, or less. The help says what is enough: each amount it names, changed alone to
+told each by itself, up to ten of them. The help says what is enough: each amount it names, changed alone to
 the value it gives, makes the mission controllable (with several conflicts: settles this one), and a microsecond
-less of a change does not. What is ours and the news come first; Nature's durations are named only where nothing
+less of a change does not. Of all the ways in which the bounds do not go together the steps tell the one that is left
+just before the first of these changes is enough: what is said to be missing is that change. Where there is none of
+which that can be said, the steps are any way round, and the difference is said to be of `this way round` only: more
+may be missing in all, or less. What is ours and the news come first; Nature's durations are named only where nothing
 else is enough. If no amount alone will do, it says so, and `kirk repair` finds what several changes, slack or an
 order less can do. With `--theory` the amounts are added up with their signs: the sum round the cycle is below
-zero. A schedule for the average case may exist all the same; kirk promises more than that.",
+zero. A schedule for the average case may exist all the same; kirk promises more than that.
+
+The question of the least change is that of P. Yu and B. Williams (Continuously relaxing over-constrained conditional
+temporal problems, IJCAI 2013) for one bound at a time; conflicts are found as by N. Bhargava, T. Vaquero and B. Williams
+(Faster conflict generation for dynamic controllability, IJCAI 2017), and several changes together as by J. Cui and others
+(Optimising bounds in simple temporal networks with uncertainty under dynamic controllability constraints, ICAPS 2015).",
     wrong: "(define-control-program drive ()
   (declare (primitive) (duration (simple :lower-bound 15 :upper-bound 20) :contingent t)))
 (define-control-program main ()

@@ -2,9 +2,9 @@
 
 use kirk_network::{Bound, Conflict, Duration, Share};
 
+use super::amounts::Enough;
 use super::{Explain, StoryStep};
 use crate::origins::Origin;
-use crate::repair::Changed;
 use crate::source::Span;
 
 /// A conflict, and all that is to be told of it.
@@ -16,7 +16,7 @@ pub(crate) struct Problem<'a> {
     pub(crate) bounds: Vec<Stated<'a>>,
     pub(crate) story: &'a [StoryStep],
     /// What settles it alone; `None` if that was not looked for.
-    pub(crate) enough: Option<&'a [Changed]>,
+    pub(crate) enough: Option<&'a Enough>,
     /// What might settle it besides.
     pub(crate) remedies: Vec<Remedy>,
     /// There are others.

@@ -12,12 +12,18 @@ use crate::words;
 
 const SECOND: Duration = Duration::from_secs(1);
 
-/// The unit an author writes amounts in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// The unit an author writes amounts in; the smallest is the least.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Unit {
+    micros: i64,
     /// The word for it, if it is written.
     word: Option<&'static str>,
-    micros: i64,
+}
+
+impl Default for Unit {
+    fn default() -> Unit {
+        Unit::SECONDS
+    }
 }
 
 impl Unit {
@@ -55,7 +61,7 @@ fn slice(place: Span, sources: &[Source]) -> &str {
 }
 
 /// The unit of what is written at a place.
-pub(super) fn unit(place: Span, sources: &[Source]) -> Unit {
+pub(crate) fn unit(place: Span, sources: &[Source]) -> Unit {
     let inner = slice(place, sources).strip_prefix('(').and_then(|text| text.strip_suffix(')'));
     let words: Vec<&str> = inner.unwrap_or_default().split_whitespace().collect();
     match words[..] {

@@ -2,18 +2,21 @@
 
 use kirk_network::stnu::TooLarge;
 use kirk_network::walk::Step;
-use kirk_network::{Bound, Conflict, Duration, Part, Share};
+use kirk_network::{Bound, Conflict, Duration, Network, Part, Share};
 
 use crate::code::Code;
 use crate::diagnostic::Diagnostic;
+use crate::explain::amounts::Enough;
 use crate::explain::problem::{Kind, Problem, Remedy, Says, Stated};
 use crate::explain::{Explain, StoryStep};
 use crate::origins::{Origin, OriginKind, Side};
-use crate::repair::{Changed, amount};
+use crate::repair::{Changed, Unit, amount};
 use crate::source::{Source, Span};
 
 /// No line is longer: with what a terminal shows before it, it fits 80 columns.
 const WIDTH: usize = 74;
+/// Of a longer story so many steps at its beginning and at its end are told, and of places where bounds are so many.
+const SHOWN: usize = 12;
 
 /// All there is to say about a conflict.
 pub(crate) fn told(problem: &Problem<'_>) -> Diagnostic {
@@ -25,7 +28,7 @@ pub(crate) fn told(problem: &Problem<'_>) -> Diagnostic {
     };
     let message = format!("`{}` cannot be executed in every case: {what}", network.name());
     let mut places: Vec<(Span, Vec<String>)> = Vec::new();
-    for bound in &problem.bounds {
+    for bound in most_telling(&problem.bounds) {
         let text = stated(bound, sources, theory);
         match places.iter_mut().find(|(known, _)| *known == bound.span) {
             Some((_, texts)) if !texts.contains(&text) => texts.push(text),
@@ -33,7 +36,7 @@ pub(crate) fn told(problem: &Problem<'_>) -> Diagnostic {
             None => places.push((bound.span, vec![text])),
         }
     }
-    let mut told = places.into_iter().map(|(span, texts)| (span, texts.join("; ")));
+    let mut told = places.into_iter().map(|(span, texts)| (span, folded(&texts).join("; ")));
     let everywhere = "there is no way to execute this that works whatever happens".to_string();
     // Where no program is named the message points at the first bound.
     let (span, primary) = match program {
@@ -42,8 +45,8 @@ pub(crate) fn told(problem: &Problem<'_>) -> Diagnostic {
     };
     let mut diagnostic = Diagnostic::error(Code::NotControllable, span, message).primary(primary);
     diagnostic = told.fold(diagnostic, |diagnostic, (span, text)| diagnostic.label(span, text));
-    diagnostic.suggestions =
-        problem.enough.unwrap_or_default().iter().filter_map(Changed::suggestion).collect();
+    let changes = problem.enough.map(|enough| enough.changes.as_slice()).unwrap_or_default();
+    diagnostic.suggestions = changes.iter().filter_map(Changed::suggestion).collect();
     let help = help(problem);
     if help.is_empty() { diagnostic } else { diagnostic.help(help.join("\n")) }
 }
@@ -60,15 +63,69 @@ pub(crate) fn and_more(last: &mut Diagnostic, more: usize, at_least: bool) {
     last.help = Some(last.help.take().map_or(text.clone(), |help| format!("{help}\n{text}")));
 }
 
+/// The bounds that are marked: where there are very many, what is allowed and then the largest that are needed.
+fn most_telling<'a, 'b>(bounds: &'b [Stated<'a>]) -> Vec<&'b Stated<'a>> {
+    let mut places: Vec<(Duration, Span)> = bounds.iter().map(|it| (-it.share.amount, it.span)).collect();
+    let is_there = |place: &(Duration, Span)| place.0 < Duration::ZERO;
+    places.sort_by_key(|place| (!is_there(place), -place.0, place.1));
+    let mut marked: Vec<Span> = Vec::new();
+    for (_, span) in places {
+        if marked.len() < 2 * SHOWN && !marked.contains(&span) {
+            marked.push(span);
+        }
+    }
+    bounds.iter().filter(|it| marked.contains(&it.span)).collect()
+}
+
+/// Texts at one place; those that differ only in the repetition they are about, as one.
+fn folded(texts: &[String]) -> Vec<String> {
+    let mut groups: Vec<(String, Vec<&String>)> = Vec::new();
+    for text in texts {
+        let whole = of_any(text);
+        match groups.iter_mut().find(|(known, _)| *known == whole) {
+            Some((_, group)) => group.push(text),
+            None => groups.push((whole, vec![text])),
+        }
+    }
+    let mut folded = Vec::new();
+    for (_, group) in groups {
+        match group[..] {
+            [_, _, _, ..] => folded.push(several(group.len(), group[0])),
+            _ => folded.extend(group.into_iter().cloned()),
+        }
+    }
+    folded
+}
+
+/// The same text about so many repetitions.
+pub(crate) fn several(times: usize, text: &str) -> String {
+    format!("{times} times: {}", of_any(text))
+}
+
+/// A text with the numbers of repetitions left out: about `a` where it is about `a#3`.
+pub(crate) fn of_any(text: &str) -> String {
+    let mut parts = text.split('#');
+    let mut whole = parts.next().unwrap_or_default().to_string();
+    for part in parts {
+        match part.trim_start_matches(|c: char| c.is_ascii_digit()) {
+            rest if rest.len() < part.len() => whole.push_str(rest),
+            _ => whole.extend(["#", part]),
+        }
+    }
+    whole
+}
+
 /// The story, the sum, and what would settle it, in lines.
 fn help(problem: &Problem<'_>) -> Vec<String> {
-    let mut lines = story(problem.story, problem.kind);
+    let mut lines = story(problem);
     if problem.explain.theory {
         lines.extend(wrapped("", &format!("The time they leave: {} < 0.", total(problem.conflict))));
     }
     let settles = if problem.is_one_of_several { "settles this conflict" } else { "is enough" };
-    match problem.enough {
+    let are_all = problem.enough.is_some_and(|enough| enough.are_all);
+    match problem.enough.map(|enough| enough.changes.as_slice()) {
         None => {}
+        Some([]) if !are_all => {}
         Some([]) if problem.kind == Kind::Circle => lines.extend(wrapped(
             "",
             "No one amount helps: what comes before what has to change. `kirk repair` tries which order could be left out.",
@@ -84,7 +141,10 @@ fn help(problem: &Problem<'_>) -> Vec<String> {
             several.iter().for_each(|one| lines.extend(wrapped("- ", &one.title())));
         }
     }
-    let is_enough = problem.enough.is_some_and(|enough| !enough.is_empty());
+    if problem.enough.is_some() && !are_all {
+        lines.extend(wrapped("", "There are more amounts than were tried; `kirk repair` tries more."));
+    }
+    let is_enough = problem.enough.is_some_and(|enough| !enough.changes.is_empty());
     let takes = if is_enough { "Or it takes" } else { "It would take" };
     let remedies: Vec<&str> = problem.remedies.iter().copied().map(remedy).collect();
     if let Some((last, rest)) = remedies.split_last() {
@@ -153,54 +213,130 @@ fn limit(origin: &Origin, word: &str, bound: &str) -> String {
     }
 }
 
-/// A story in numbered lines.
-fn story(story: &[StoryStep], kind: Kind) -> Vec<String> {
+/// A story in numbered lines, with the middle left out where it is very long.
+fn story(problem: &Problem<'_>) -> Vec<String> {
+    let story = problem.story;
     if story.is_empty() {
         return Vec::new();
     }
-    let is_circle = kind == Kind::Circle;
-    let mut lines = vec![match is_circle {
-        true => "Each of these comes after the one before, and the first after the last:".to_string(),
-        false => "Step by step:".to_string(),
-    }];
-    for (number, StoryStep { text, .. }) in story.iter().enumerate() {
-        lines.extend(wrapped(&format!("{:>2}. ", number + 1), text));
+    let is_circle = problem.kind == Kind::Circle;
+    let mut lines = match is_circle {
+        true => vec!["Each of these comes after the one before, and the first after the last:".to_string()],
+        false => vec!["Step by step:".to_string()],
+    };
+    let left_out = match story.len() {
+        many if many > 2 * SHOWN + 1 => SHOWN..many - SHOWN,
+        _ => 0..0,
+    };
+    let unit = unit(story);
+    for (at, StoryStep { text, .. }) in story.iter().enumerate() {
+        if at == left_out.start && !left_out.is_empty() {
+            let (needed, there) = sums(&story[left_out.clone()]);
+            let allowed = match there {
+                Duration::ZERO => String::new(),
+                there => format!(" and allow {}", unit.say(there)),
+            };
+            let text = format!("{} more steps need {}{allowed}", left_out.len(), unit.say(needed));
+            lines.extend(wrapped("  - ", &text));
+        }
+        if !left_out.contains(&at) {
+            lines.extend(wrapped(&format!("{:>2}. ", at + 1), text));
+        }
     }
     if !is_circle {
-        let all = |is_meant: fn(&Duration) -> bool| {
-            let needs = story.iter().map(|step| step.needs).filter(is_meant);
-            needs.fold(Duration::ZERO, |sum, amount| sum.checked_add(amount).unwrap_or(Duration::MAX))
-        };
-        let needed = all(|needs| *needs > Duration::ZERO);
-        let there = -all(|needs| *needs < Duration::ZERO);
-        lines.push(format!("That needs {needed} s, and {there} s are there."));
+        lines.extend(wrapped("", &balance(problem, sums(story), unit)));
     }
     lines
+}
+
+/// What is needed and what is there, and what is missing where that is what has to change.
+fn balance(problem: &Problem<'_>, (needed, there): (Duration, Duration), unit: Unit) -> String {
+    let count = |amount: Duration| match amount {
+        Duration::ZERO => "nothing is".to_string(),
+        amount => be(unit.say(amount)),
+    };
+    let sum = format!("That needs {}, and {} there", unit.say(needed), count(there));
+    let Some(Enough { changes, witness, .. }) = problem.enough else {
+        return format!("{sum}: this way round, and more may be missing.");
+    };
+    let first = changes.first().and_then(Changed::amount_changed);
+    match (witness, first) {
+        (Some(witness), _) if witness.times <= 1 => {
+            format!("{sum}: {} missing.", be(unit.say(needed.checked_sub(there).unwrap_or_default())))
+        }
+        (Some(witness), Some(by)) => format!(
+            "{sum}: {} missing, but what is named first here counts {} times, so {by} will do.",
+            be(unit.say(needed.checked_sub(there).unwrap_or_default())),
+            witness.times
+        ),
+        (None, Some(by)) => format!("{sum}, this way round; in all, {} missing.", be(by)),
+        _ => format!("{sum}, this way round."),
+    }
+}
+
+/// An amount as the subject of a sentence: `1 minute is`, `20 s are`.
+fn be(amount: String) -> String {
+    let is_one = amount == "1 s" || amount.starts_with("1 ") && !amount.ends_with('s');
+    let verb = if is_one { "is" } else { "are" };
+    format!("{amount} {verb}")
+}
+
+/// What steps need, and what they allow.
+fn sums(story: &[StoryStep]) -> (Duration, Duration) {
+    let all = |is_meant: fn(&Duration) -> bool| {
+        let needs = story.iter().map(|step| step.needs).filter(is_meant);
+        needs.fold(Duration::ZERO, |sum, amount| sum.checked_add(amount).unwrap_or(Duration::MAX))
+    };
+    (all(|needs| *needs > Duration::ZERO), -all(|needs| *needs < Duration::ZERO))
+}
+
+/// The unit for sums: the smallest that is written.
+fn unit(story: &[StoryStep]) -> Unit {
+    let units = story.iter().filter(|step| step.needs != Duration::ZERO).map(|step| step.unit);
+    units.min().unwrap_or_default()
 }
 
 /// One step of a story; the first has nothing before it that it could be a "but" to.
 pub(crate) fn step(
     step: &Step,
-    (origin, side): (&Origin, Side),
+    origin: &Origin,
+    network: &Network,
     sources: &[Source],
     is_first: bool,
 ) -> String {
-    let needs = amount(step.needs.abs(), origin.place(side), sources);
+    let place = Side::of(step.part).map_or(origin.span, |side| origin.place(side));
+    let needs = amount(step.needs.abs(), place, sources);
     let but = if is_first { "" } else { "but " };
     let end = || origin.end();
     match step.part {
         Part::LinkUpper(_) => format!("Nature may take {needs} {}", origin.about()),
         Part::LinkLower(_) => format!("{but}Nature may take only {needs} {}", origin.about()),
+        Part::DelayMax(link) if step.needs == Duration::ZERO => match network.contingents()[link].delay.max {
+            Bound::Infinite => format!("{} may never be heard", end()),
+            Bound::Finite(most) => {
+                format!(
+                    "the news of {} may be {} late, too late to be of use",
+                    end(),
+                    amount(most, place, sources)
+                )
+            }
+        },
         Part::DelayMax(_) => format!("the news of {} may take {needs}", end()),
         Part::DelayMin(_) => format!("{but}the news of {} may take only {needs}", end()),
-        _ if !origin.kind.is_amount() => origin.text(),
-        _ if step.needs == Duration::ZERO => format!("the order {}", origin.about()),
-        Part::RequirementLower(_) if step.needs > Duration::ZERO => {
-            format!("you need at least {needs} {}", origin.about())
-        }
+        _ if !origin.kind.is_amount() => origin.told_elsewhere(),
+        _ if step.needs == Duration::ZERO => match step.part {
+            Part::RequirementUpper(_) => format!("you allow no time {}", origin.about()),
+            Part::Join(_) => origin.told_elsewhere(),
+            _ => format!("the order {}", origin.about()),
+        },
+        // A bound below zero is one the other way round.
         Part::RequirementUpper(_) if step.needs > Duration::ZERO => {
-            format!("you need at least {needs} the other way than {}", origin.about())
+            format!("you need at least {needs} {}", origin.back())
         }
+        Part::RequirementLower(_) if step.needs < Duration::ZERO => {
+            format!("you allow at most {needs} {}", origin.back())
+        }
+        Part::RequirementLower(_) => format!("you need at least {needs} {}", origin.about()),
         _ => format!("you allow at most {needs} {}", origin.about()),
     }
 }

@@ -58,30 +58,43 @@ impl Side {
 }
 
 impl Origin {
-    /// What it says, as part of a sentence.
+    /// What it says, as part of a sentence where it stands.
     pub fn text(&self) -> String {
-        let Origin { kind, says, subject, .. } = self;
-        let slack = *kind == OriginKind::Order;
+        let Origin { kind, says, .. } = self;
         match says {
-            Statement::Passes { least, most, news } => self.passes(*least, *most, *news),
             Statement::Starts(part) | Statement::Ends(part) if *kind == OriginKind::SideBySide => {
                 let verb = if matches!(says, Statement::Starts(_)) { "starts" } else { "ends" };
                 format!("{} {verb} together with the others here (no slack)", part.inside())
             }
-            Statement::Starts(part) => {
-                format!("{} starts {} {subject} starts", part.inside(), if slack { "after" } else { "when" })
+            _ => self.sentence(Subject::inside, Subject::to_string),
+        }
+    }
+
+    /// The same where it does not stand.
+    pub(crate) fn told_elsewhere(&self) -> String {
+        self.sentence(Subject::elsewhere, Subject::elsewhere)
+    }
+
+    fn sentence(&self, part: fn(&Subject) -> String, whole: fn(&Subject) -> String) -> String {
+        let Origin { kind, says, subject, .. } = self;
+        let (is_order, whole) = (*kind == OriginKind::Order, whole(subject));
+        let after = if is_order { "after" } else { "when" };
+        let no_slack = if is_order { "" } else { " (no slack)" };
+        match says {
+            Statement::Passes { least, most, news } => self.passes(*least, *most, *news),
+            Statement::Starts(it) if *kind == OriginKind::SideBySide => {
+                format!("{} starts when {whole} starts{no_slack}", part(it))
             }
-            Statement::Ends(part) => format!("{} ends before {subject} ends", part.inside()),
-            Statement::Follows(part, before) if slack => {
-                format!("{} starts after {} ends", part.inside(), before.inside())
+            Statement::Ends(it) if *kind == OriginKind::SideBySide => {
+                format!("{} ends when {whole} ends{no_slack}", part(it))
             }
-            Statement::Follows(part, before) => {
-                format!("{} starts when {} ends (no slack)", part.inside(), before.inside())
+            Statement::Starts(it) => format!("{} starts {after} {whole} starts", part(it)),
+            Statement::Ends(it) => format!("{} ends before {whole} ends", part(it)),
+            Statement::Follows(it, first) => {
+                format!("{} starts {after} {} ends{no_slack}", part(it), part(first))
             }
-            Statement::Closes(part) => {
-                format!("{subject} ends {} {} ends", if slack { "after" } else { "when" }, part.inside())
-            }
-            Statement::Empty => format!("{subject} is empty and takes no time"),
+            Statement::Closes(it) => format!("{whole} ends {after} {} ends", part(it)),
+            Statement::Empty => format!("{whole} is empty and takes no time"),
         }
     }
 
@@ -119,6 +132,17 @@ impl Origin {
         match &self.subject {
             Subject::Reach(_) => self.subject.to_string(),
             subject => format!("for {}", subject.elsewhere()),
+        }
+    }
+
+    /// From where to where it reaches the other way round.
+    pub(crate) fn back(&self) -> String {
+        match &self.subject {
+            Subject::Reach(ends) => format!("from {} to {}", ends[1], ends[0]),
+            subject => {
+                let name = subject.elsewhere();
+                format!("from the end of {name} to its start")
+            }
         }
     }
 

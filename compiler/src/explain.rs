@@ -112,14 +112,6 @@ impl<'a> Explain<'a> {
     /// Words a conflict that these changes settle, each alone.
     fn told(&self, conflict: &Conflict, enough: Option<Enough>, is_one_of_several: bool) -> Told {
         let Explain { network, origins, sources, .. } = *self;
-        let mut bounds: Vec<Stated<'_>> = Vec::new();
-        for stated in conflict.members.iter().filter_map(|share| stated(share, network, origins)) {
-            // That the parts are joined goes without saying where it is said what is joined.
-            let is_bare = stated.says == Says::Joined && stated.share.times <= 1;
-            if !is_bare || bounds.iter().all(|known| known.span != stated.span) {
-                bounds.push(stated);
-            }
-        }
         let amounts = |enough: &Enough| -> BTreeSet<Part> {
             let part = |change: &Changed| match change.change {
                 ChangeKind::Amount { part, .. } => Some(part),
@@ -129,6 +121,15 @@ impl<'a> Explain<'a> {
         };
         let settling = enough.as_ref().map(amounts).unwrap_or_default();
         let story = steps(conflict, network, origins, sources, &settling).unwrap_or_default();
+        let conflict = &with_late_news(conflict, &story);
+        let mut bounds: Vec<Stated<'_>> = Vec::new();
+        for stated in conflict.members.iter().filter_map(|share| stated(share, network, origins)) {
+            // That the parts are joined goes without saying where it is said what is joined.
+            let is_bare = stated.says == Says::Joined && stated.share.times <= 1;
+            if !is_bare || bounds.iter().all(|known| known.span != stated.span) {
+                bounds.push(stated);
+            }
+        }
         let diagnostic = wording::conflict::told(&Problem {
             explain: *self,
             conflict,
@@ -141,6 +142,18 @@ impl<'a> Explain<'a> {
         });
         Told { conflict: conflict.clone(), diagnostic, story, enough: enough.map(|enough| enough.changes) }
     }
+}
+
+/// The same with the news as members that is said to be too late: it takes nothing from the sum, and would have to come sooner.
+fn with_late_news(conflict: &Conflict, story: &[StoryStep]) -> Conflict {
+    let mut conflict = conflict.clone();
+    for part in story.iter().map(|step| step.part).filter(|part| matches!(part, Part::DelayMax(_))) {
+        if conflict.members.iter().all(|share| share.part != part) {
+            conflict.members.push(Share { part, times: 0, amount: Duration::ZERO });
+        }
+    }
+    conflict.members.sort_by_key(|share| share.part);
+    conflict
 }
 
 /// What does not go together.
@@ -208,7 +221,7 @@ fn is_natures(network: &Network, Requirement { from, to, .. }: Requirement) -> b
 /// What one part of the conflict says, and where. `None` for what a user need not know.
 pub(crate) fn stated<'a>(share: &Share, network: &Network, origins: &'a Origins) -> Option<Stated<'a>> {
     let origin = origins.constraint(share.part)?;
-    if share.times == 0 && !matches!(share.part, Part::Join(_)) {
+    if share.times == 0 && !matches!(share.part, Part::Join(_) | Part::DelayMax(_)) {
         return None;
     }
     let requirement = |index: usize| network.requirements().get(index);

@@ -44,10 +44,12 @@ pub(super) fn steps(
     begin_with_a_need(&mut steps);
     if is_circle(conflict) || steps.iter().all(|step| step.needs >= Duration::ZERO) {
         steps = with_joins(&steps, conflict, network);
+        with_late_news(&mut steps, network, settling);
     } else {
-        steps.retain(|step| step.needs != Duration::ZERO);
+        with_late_news(&mut steps, network, settling);
+        let is_news = |step: &Step| matches!(step.part, Part::DelayMax(_));
+        steps.retain(|step| step.needs != Duration::ZERO || is_news(step));
     }
-    with_late_news(&mut steps, network, settling);
     let mut told: Vec<StoryStep> = Vec::new();
     for step in &steps {
         // Of what has no origin there is nothing to say.

@@ -30,6 +30,7 @@ mod run;
 mod sarif;
 mod show;
 mod slack;
+mod table;
 mod team;
 mod timetable;
 mod verify;

@@ -43,7 +43,10 @@ fn a_network_is_measured_as_well_and_programs_can_read_it() {
     assert_eq!(of("contingents[0]: how late", "max-delay")["most"], 8);
     assert_eq!(document["budget"], json!([{"event": "b", "value": 5, "most": 8}]));
     assert_eq!(document["factor"], 1.6);
-    assert_eq!(document["activities"], json!([{"name": "c", "latest_start": 30, "may_take": null}]));
+    assert_eq!(
+        document["activities"],
+        json!([{"name": "c", "decided_by": "us", "put_off_to": 30, "earliest_start": 22, "latest_start": 50, "may_take": null}])
+    );
 }
 
 #[test]

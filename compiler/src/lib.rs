@@ -110,7 +110,7 @@ pub use team::{Link, Team};
 pub use typed::{Model, Work};
 pub use unfold::{Unfolded, unfold};
 pub use wording::conflict::too_large;
-pub use written::{Written, measurable, written};
+pub use written::{Written, measurable, usual_unit, written};
 
 /// What to compile of the sources.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -22,8 +22,8 @@ use crate::origins::{Origin, OriginKind, Origins, Side};
 use crate::source::{Source, Span};
 pub use crate::wording::repair::what;
 use crate::written::{Written, written};
-pub use edit::Unit;
 pub(crate) use edit::unit;
+pub use edit::{Unit, written_unit};
 use structure::Restructured;
 pub use structure::slack;
 

@@ -11,6 +11,7 @@ mod parse;
 mod read;
 pub(crate) mod repair;
 mod team;
+mod written;
 
 use crate::ast::{Limits, Role};
 use crate::code::Code;

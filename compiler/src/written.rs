@@ -1,13 +1,14 @@
 //! The bounds that somebody has written: several of a network that are written once are one to whoever changes them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use kirk_network::slack::bounds;
 use kirk_network::vary::Knob;
-use kirk_network::{Duration, Network, Part};
+use kirk_network::{Bound, Duration, Network, Part};
 
 use crate::origins::{Origin, OriginKind, Origins, Side};
-use crate::source::Span;
+use crate::repair::{Unit, written_unit};
+use crate::source::{Source, Span};
 
 /// A bound as it is written, with all that is read there.
 #[derive(Clone, Debug)]
@@ -26,11 +27,36 @@ impl Written<'_> {
         self.origin.place(self.side)
     }
 
+    /// The unit in which it is written; `usual`, if that cannot be seen there.
+    pub fn unit(&self, usual: Unit, sources: &[Source]) -> Unit {
+        written_unit(self.place(), sources).unwrap_or(usual)
+    }
+
+    /// The least and the greatest value that is read there.
+    pub fn values(&self, network: &Network) -> (Bound, Bound) {
+        let value = |part: &Part| Knob::of(*part).map_or(Bound::Infinite, |knob| knob.value(network));
+        let size = |bound: &Bound| bound.finite().map_or(i64::MAX, Duration::as_micros);
+        let all = || self.parts.iter().map(value);
+        let first = value(&self.parts[0]);
+        (all().min_by_key(size).unwrap_or(first), all().max_by_key(size).unwrap_or(first))
+    }
+
     /// True if all that is read there has one value. An argument gives it several, and no one text says them all.
     pub fn has_one_value(&self, network: &Network) -> bool {
-        let value = |part: &Part| Knob::of(*part).map(|knob| knob.value(network));
-        self.parts.iter().all(|part| value(part) == value(&self.parts[0]))
+        let (least, most) = self.values(network);
+        least == most
     }
+}
+
+/// The unit in which most amounts of a mission are written: in it its times are told.
+pub fn usual_unit(origins: &Origins, sources: &[Source]) -> Unit {
+    let places: BTreeSet<Span> =
+        origins.requirements.iter().chain(&origins.contingents).flat_map(|origin| origin.places).collect();
+    let mut counts: BTreeMap<i64, (usize, Unit)> = BTreeMap::new();
+    for unit in places.into_iter().filter_map(|place| written_unit(place, sources)) {
+        counts.entry(unit.micros).or_insert((0, unit)).0 += 1;
+    }
+    counts.into_values().max_by_key(|(count, _)| *count).map_or(Unit::SECONDS, |(_, unit)| unit)
 }
 
 /// Those whose slack is worth a word: what is written by itself, and not what a form leaves open; news that comes at once, or may

@@ -21,11 +21,11 @@ pub struct Hint {
     pub about: String,
 }
 
-/// With more events than this it would take long to say of everything in sight how late it may start.
+/// With more events than this it would take long to say of everything in sight how long it can wait.
 const SMALL: usize = 200;
 
-/// The earliest start and the latest end of everything that is called between two offsets; and how late it may start, unless that
-/// would take long: the hover says so of a single one.
+/// The earliest start and the latest end of everything that is called between two offsets; and until when its start can be put off,
+/// unless that would take long: the hover says so of a single one.
 pub fn hints(view: &View, within: Span) -> Vec<Hint> {
     let events: usize = view.missions.iter().map(|mission| mission.lowered.network.events().len()).sum();
     let mut found = Vec::new();
@@ -56,20 +56,25 @@ fn hint(view: &View, span: Span, is_small: bool) -> Option<Hint> {
         1 => String::new(),
         count => format!("{count}x "),
     };
+    let Judged { program, unit, .. } = all.first()?.0;
+    let from = unit.say_time(earliest);
     let (mut label, until) = match latest {
-        Some(latest) => {
-            (format!("{count}{earliest}-{latest} s"), format!("ends at {latest} s at the latest"))
-        }
-        None => (format!("{count}{earliest} s-"), "nothing limits when it ends".to_string()),
+        Some(latest) => (
+            format!("{count}{}", unit.say_times(earliest, "-", latest)),
+            format!("ends at {} at the latest", unit.say_time(latest)),
+        ),
+        None => (format!("{count}{from}-"), "nothing limits when it ends".to_string()),
     };
-    let name = &all.first()?.0.program;
-    let mut about = format!("starts at {earliest} s at the earliest, {until}, after the start of `{name}`");
+    let mut about = format!("starts at {from} at the earliest, {until}, after the start of `{program}`");
     if let [(mission, occurrence)] = all[..]
         && is_small
         && let Some(Bound::Finite(latest)) = start_of(mission, occurrence)
     {
-        label.push_str(&format!(", start by {latest} s"));
-        about.push_str(&format!("; it may start as late as {latest} s with all else guaranteed"));
+        let latest = unit.say(latest);
+        label.push_str(&format!(", can wait to {latest}"));
+        about.push_str(&format!(
+            "; its start can be put off to {latest} in any case, with all else guaranteed"
+        ));
     }
     Some(Hint { offset: span.end, label, about })
 }
@@ -110,7 +115,7 @@ pub fn lenses(view: &View) -> Vec<Lens> {
 }
 
 fn verdict(mission: &Judged) -> String {
-    let network = &mission.lowered.network;
+    let (network, unit) = (&mission.lowered.network, mission.unit);
     match &mission.verdict {
         Judgement::Uncontrollable => "not controllable: some bounds do not go together".to_string(),
         Judgement::TooLarge => "no verdict: the durations add up to too much".to_string(),
@@ -119,12 +124,14 @@ fn verdict(mission: &Judged) -> String {
             let end = mission.occurrences.first().and_then(|root| mission.window(root.end));
             let takes = match end {
                 Some(Window { earliest, latest: Some(latest) }) if earliest == latest => {
-                    format!(", takes {latest} s")
+                    format!(", takes {}", unit.say_time(latest))
                 }
                 Some(Window { earliest, latest: Some(latest) }) => {
-                    format!(", takes {earliest} to {latest} s")
+                    format!(", takes {}", unit.say_times(earliest, " to ", latest))
                 }
-                Some(Window { earliest, latest: None }) => format!(", takes at least {earliest} s"),
+                Some(Window { earliest, latest: None }) => {
+                    format!(", takes at least {}", unit.say_time(earliest))
+                }
                 None => String::new(),
             };
             let uncertain = network.contingents().len();

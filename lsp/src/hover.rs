@@ -2,6 +2,7 @@
 
 use kirk_compiler::ast::{Amount, AmountKind, Body, ControlProgram, DurationOf};
 use kirk_compiler::episode::Kind;
+use kirk_compiler::repair::Unit;
 use kirk_compiler::words::word;
 use kirk_compiler::{Source, Span, Symbol, SymbolKind};
 use kirk_network::news::{Treatment, treatments};
@@ -247,7 +248,8 @@ fn times(mission: &Judged, occurrence: &Occurrence, detailed: bool) -> Option<St
         Kind::Primitive | Kind::Program => format!("`{}`", occurrence.name),
         kind => format!("this `{}`", kind.word()),
     };
-    let mut text = format!("- {name} starts {} and ends {}", when(start), when(end));
+    let mut text =
+        format!("- {name} starts {} and ends {}", when(start, mission.unit), when(end, mission.unit));
     let Waits { together, after, link } = waits(network, occurrence.start);
     if link.is_some() {
         text.push_str("; Nature decides when it starts");
@@ -287,10 +289,10 @@ fn times(mission: &Judged, occurrence: &Occurrence, detailed: bool) -> Option<St
 }
 
 /// `at 5 s`, `from 5 to 20 s`, `from 5 s on`.
-pub(crate) fn when(window: Window) -> String {
+fn when(window: Window, unit: Unit) -> String {
     match window.latest {
-        Some(latest) if latest == window.earliest => format!("at {latest} s"),
-        Some(latest) => format!("from {} to {latest} s", window.earliest),
-        None => format!("from {} s on", window.earliest),
+        Some(latest) if latest == window.earliest => format!("at {}", unit.say_time(latest)),
+        Some(latest) => format!("from {}", unit.say_times(window.earliest, " to ", latest)),
+        None => format!("from {} on", unit.say_time(window.earliest)),
     }
 }

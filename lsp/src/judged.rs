@@ -1,11 +1,13 @@
 //! A program unfolded and judged: which occurrences there are, when each can happen, and the verdict.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use kirk_compiler::Problems;
 use kirk_compiler::episode::{Episode, Kind};
+use kirk_compiler::repair::Unit;
 use kirk_compiler::{
-    Diagnostic, Explain, Lowered, Source, Span, Team, Unfolded, events_of, too_large, unfold,
+    Diagnostic, Explain, Lowered, Source, Span, Team, Unfolded, events_of, too_large, unfold, usual_unit,
 };
 use kirk_network::EventId;
 use kirk_network::stnu::TooLarge;
@@ -31,6 +33,10 @@ pub struct Judged {
     pub windows: Option<Vec<Window>>,
     /// Whether it can be promised.
     pub verdict: Judgement,
+    /// The texts that were judged, which all places point into.
+    pub sources: Arc<[Source]>,
+    /// The unit in which its times are told: that of most amounts.
+    pub unit: Unit,
 }
 
 /// One occurrence of a program or a form.
@@ -71,6 +77,7 @@ impl Judgement {
 /// Unfolds and judges every program a mission may start from, and says what there is to say about them.
 pub fn judge(unjudged: Unjudged) -> (Vec<Judged>, Vec<Diagnostic>) {
     let Unjudged { mut model, roots, sources } = unjudged;
+    let sources: Arc<[Source]> = sources.into();
     let mut missions = Vec::new();
     let mut problems = Problems::default();
     // Several conflicts are told at one place.
@@ -90,7 +97,7 @@ pub fn judge(unjudged: Unjudged) -> (Vec<Judged>, Vec<Diagnostic>) {
     (missions, told)
 }
 
-fn mission(root: &Episode, lowered: Lowered, sources: &[Source]) -> (Judged, Vec<Diagnostic>) {
+fn mission(root: &Episode, lowered: Lowered, sources: &Arc<[Source]>) -> (Judged, Vec<Diagnostic>) {
     let explain = Explain::of(&lowered, sources);
     let (verdict, diagnostics) = match &lowered.team {
         Some(team) => by_team(team, &lowered, &explain),
@@ -103,8 +110,9 @@ fn mission(root: &Episode, lowered: Lowered, sources: &[Source]) -> (Judged, Vec
         occurrences.push(Occurrence { name: episode.name.clone(), kind: episode.kind, start, end });
     }
     let windows = windows(&lowered.network);
-    let mission =
-        Judged { program: root.name.clone(), name: root.span, lowered, occurrences, at, windows, verdict };
+    let (unit, sources) = (usual_unit(&lowered.origins, sources), sources.clone());
+    let (program, name) = (root.name.clone(), root.span);
+    let mission = Judged { program, name, lowered, occurrences, at, windows, verdict, sources, unit };
     (mission, diagnostics)
 }
 

@@ -1,11 +1,11 @@
-//! How much is left of a "yes" at one place: how late an activity may start, how far a bound can move. Exact, and found by asking for
+//! How much is left of a "yes" at one place: how long an activity can wait, how far a bound can move. Exact, and found by asking for
 //! the verdict again and again, so only where somebody looks.
 
 use kirk_compiler::episode::Kind;
-use kirk_compiler::repair::what;
-use kirk_compiler::{Span, Written, measurable};
+use kirk_compiler::repair::{Unit, what, written_unit};
+use kirk_compiler::{Side, Span, Written, measurable};
 use kirk_network::merge::{Merged, merge};
-use kirk_network::promise::{latest_start, stretch};
+use kirk_network::promise::{put_off_to, stretch};
 use kirk_network::slack::slack;
 use kirk_network::vary::Knob;
 use kirk_network::{Bound, Duration, EventId, Network, Part};
@@ -22,14 +22,14 @@ const TOO_LARGE: &str = "how much is left is not measured here, as the mission i
 /// What an occurrence has left, each alone, with all else as it is and still guaranteed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Left {
-    /// How late it may start, whatever happens; nothing if Nature decides when.
+    /// Until when its start can be put off in any case; nothing if that is not ours to choose.
     start: Option<Bound>,
     /// How long what is ours may be made to take.
-    stretch: Option<Bound>,
+    stretch: Option<(Bound, Unit)>,
     /// How long Nature takes at most, and may take.
-    natures: Option<(Duration, Bound)>,
+    natures: Option<(Duration, Bound, Unit)>,
     /// How late the news of the end may be, as it is and at most.
-    news: Option<(Duration, Bound)>,
+    news: Option<(Duration, Bound, Unit)>,
 }
 
 /// What an occurrence has left, in a sentence; nothing if there is no guarantee.
@@ -39,26 +39,27 @@ pub(crate) fn of_occurrence(mission: &Judged, occurrence: &Occurrence) -> Option
     }
     let Left { start, stretch, natures, news } = left(mission, occurrence);
     let start = start.map(|start| match start.finite() {
-        Some(start) => format!("it may start as late as {start} s"),
-        None => "it may start as late as you like".to_string(),
+        Some(start) => format!("its start can be put off to {} in any case", mission.unit.say(start)),
+        None => "its start can be put off as long as you like".to_string(),
     });
-    let stretch = stretch.map(|most| match most.finite() {
-        Some(most) => format!("it may be stretched to {most} s"),
+    let stretch = stretch.map(|(most, unit)| match most.finite() {
+        Some(most) => format!("it may be stretched to {}", unit.say(most)),
         None => "it may take any time".to_string(),
     });
-    let natures = natures.map(|(now, most)| match most.finite() {
-        Some(most) => format!("Nature may take up to {most} s (now {now} s)"),
+    let natures = natures.map(|(now, most, unit)| match most.finite() {
+        Some(most) => format!("Nature may take up to {} (now {})", unit.say(most), unit.say(now)),
         None => "Nature may take any time".to_string(),
     });
-    let news = news.map(|(now, most)| match most.finite() {
-        Some(most) => format!("its news may be up to {most} s late (now {now} s)"),
+    let news = news.map(|(now, most, unit)| match most.finite() {
+        Some(most) => format!("its news may be up to {} late (now {})", unit.say(most), unit.say(now)),
         None => "its news need never come".to_string(),
     });
     let told: Vec<String> = [start, stretch, natures, news].into_iter().flatten().collect();
     (!told.is_empty()).then(|| format!("each alone, with all else guaranteed: {}", told.join("; ")))
 }
 
-/// How late an occurrence may start, if we decide, and the mission is so small that this is known at once.
+/// Until when the start of an occurrence can be put off in any case, if we decide, and the mission is so small that this is known
+/// at once.
 pub(crate) fn start_of(mission: &Judged, occurrence: &Occurrence) -> Option<Bound> {
     is_measured(mission)?.then(|| latest(&mission.lowered.network, occurrence.start))?
 }
@@ -79,21 +80,29 @@ fn left(mission: &Judged, occurrence: &Occurrence) -> Left {
     if let Some(index) = network.contingents().iter().position(|it| (it.from, it.to) == (start, end)) {
         let link = network.contingents()[index];
         let most = |part: Part| Some(slack(network, &[Knob::of(part)?]).ok()??.first()?.most);
-        left.natures = most(Part::LinkUpper(index)).map(|most| (link.upper, most));
-        left.news = link.delay.max.finite().and_then(|now| Some((now, most(Part::DelayMax(index))?)));
+        let unit = |side: Side| unit(mission, mission.lowered.origins.contingents[index].place(side));
+        left.natures = most(Part::LinkUpper(index)).map(|most| (link.upper, most, unit(Side::Upper)));
+        let late = link.delay.max.finite().zip(most(Part::DelayMax(index)));
+        left.news = late.map(|(now, most)| (now, most, unit(Side::MaxDelay)));
     } else if let Some(index) = network.requirements().iter().position(|it| (it.from, it.to) == (start, end))
     {
-        left.stretch = stretch(network, index).ok().flatten();
+        let unit = unit(mission, mission.lowered.origins.requirements[index].place(Side::Upper));
+        left.stretch = stretch(network, index).ok().flatten().map(|most| (most, unit));
     }
     left
 }
 
-/// How late an event may come whatever happens, if it is ours.
+/// The unit in which an amount is written.
+fn unit(mission: &Judged, place: Span) -> Unit {
+    written_unit(place, &mission.sources).unwrap_or(mission.unit)
+}
+
+/// Until when an event can be put off in any case, if it is ours.
 fn latest(network: &Network, event: EventId) -> Option<Bound> {
     let Merged { network: merged, event_of, .. } = merge(network);
     let event_there = event_of[event.index()];
     let is_ours = merged.link_of(event_there).is_none() && event_there != merged.origin();
-    is_ours.then(|| latest_start(network, event).ok().flatten())?
+    is_ours.then(|| put_off_to(network, event).ok().flatten())?
 }
 
 /// How far the bounds can move that are written at a place of the newest text, each in a line.
@@ -106,7 +115,7 @@ pub(crate) fn of_bounds(view: &View, place: Span) -> Vec<String> {
         let here: Vec<Written<'_>> = written.into_iter().filter(|it| it.place() == before).collect();
         match is_measured(mission) {
             Some(false) if !here.is_empty() => lines.push(TOO_LARGE.to_string()),
-            Some(true) => lines.extend(here.iter().filter_map(|written| of_bound(network, written))),
+            Some(true) => lines.extend(here.iter().filter_map(|written| of_bound(mission, written))),
             _ => {}
         }
     }
@@ -115,19 +124,15 @@ pub(crate) fn of_bounds(view: &View, place: Span) -> Vec<String> {
     lines
 }
 
-fn of_bound(network: &Network, written: &Written<'_>) -> Option<String> {
-    let (part, count) = (written.parts[0], written.parts.len());
+fn of_bound(mission: &Judged, written: &Written<'_>) -> Option<String> {
+    let network = &mission.lowered.network;
+    let unit = written.unit(mission.unit, &mission.sources);
     let found = slack(network, &[Knob::together(written.parts.clone())?]).ok()??;
-    let slack = found.first()?;
-    let what = format!("{}, {}", what(part, written.origin)?, written.side.word());
-    if written.has_one_value(network) {
-        let now = slack.value.finite().map_or("any".to_string(), |now| format!("{now} s"));
-        let all = if count > 1 { format!(" in all {count} occurrences together") } else { String::new() };
-        return Some(format!("{what}: {now}, and may be {}{all}, with all else guaranteed", slack.range()));
-    }
-    let harder = if part.is_subtracted() { "more" } else { "less" };
-    let by = slack.room.map_or("any amount".to_string(), |room| format!("up to {room} s"));
-    Some(format!(
-        "{what}: may be {by} {harder} in all {count} occurrences together, with all else guaranteed"
-    ))
+    let what = format!("{}, {}", what(written.parts[0], written.origin)?, written.side.word());
+    let (now, may_be) = (written.now(network, unit), written.may_be(found.first()?, network, unit));
+    let all = match written.parts.len() {
+        1 => String::new(),
+        count => format!(" in all {count} occurrences together"),
+    };
+    Some(format!("{what}: {now}, and may be {may_be}{all}, with all else guaranteed"))
 }

@@ -52,7 +52,7 @@ fn is_tight(text: &str, old: &str, figure: Duration, beyond: Duration, written: 
 #[test]
 fn what_an_activity_has_left_is_exact() {
     let scan = hover_at(MISSION, "(sc^an)");
-    let start = figure(&scan, "it may start as late as ");
+    let start = figure(&scan, "its start can be put off to ");
     is_tight(MISSION, "(scan)", start, MICRO, |amount| format!("(delay {amount}) (scan)"));
     let most = figure(&scan, "Nature may take up to ");
     is_tight(MISSION, ":upper-bound 40", most, MICRO, |amount| format!(":upper-bound {amount}"));
@@ -68,7 +68,7 @@ fn what_an_activity_has_left_is_exact() {
 #[test]
 fn what_is_put_off_depends_on_nature() {
     let pour = hover_at(AFTER, "(po^ur)");
-    let start = figure(&pour, "it may start as late as ");
+    let start = figure(&pour, "its start can be put off to ");
     let sequence = "(sequence (:slack t) (heat) (pour))";
     let at_least = |amount: Duration| {
         format!(
@@ -106,7 +106,7 @@ fn how_far_a_bound_can_move_is_told_where_it_is_written() {
     let minutes = AFTER.replace(":upper-bound 60", ":upper-bound (minutes 1)");
     for needle in ["(minu^tes 1)", "(minutes ^1)"] {
         assert!(
-            hover_at(&minutes, needle).contains("at most: 60 s, and may be "),
+            hover_at(&minutes, needle).contains("at most: 1 minute, and may be "),
             "{}",
             hover_at(&minutes, needle)
         );
@@ -122,7 +122,7 @@ fn what_is_written_once_moves_together_and_what_has_many_values_is_told_by_how_m
     let least = hover_at(text, ":lower-bound ^1");
     assert!(least.contains("1 s, and may be 3 s or less in all 2 occurrences together"), "{least}");
     let most = hover_at(text, ":upper-bound mo^st");
-    assert!(most.contains("may be up to 2 s less in all 2 occurrences together"), "{most}");
+    assert!(most.contains("3 to 5 s, and may be up to 2 s less in all 2 occurrences together"), "{most}");
 }
 
 #[test]
@@ -130,7 +130,7 @@ fn of_a_no_and_of_what_is_very_large_nothing_is_measured() {
     let no = MISSION.replace("(minutes 2)", "30");
     assert!(!is_promised(&no));
     let said = hover_at(&no, "(sc^an)");
-    assert!(!said.contains("as late as"), "{said}");
+    assert!(!said.contains("put off"), "{said}");
     let large = "(define-control-program hop () (declare (primitive) (duration (simple :lower-bound 1 :upper-bound 2))))
 (define-control-program wait () (declare (primitive)))
 (define-control-program main () (sequence (:slack t) (wait) (dotimes (i 10000) (hop))))";
@@ -145,11 +145,11 @@ fn hints_tell_the_latest_start_of_small_missions() {
     let shown = |view: &View, text: &str| -> Vec<String> {
         hints(view, Span::new(0, 0, text.len())).into_iter().map(|hint| hint.label).collect()
     };
-    let scan = figure(&hover_at(MISSION, "(sc^an)"), "it may start as late as ");
-    let stow = figure(&hover_at(MISSION, "(st^ow 3)"), "it may start as late as ");
-    let expected = [format!("0-119 s, start by {scan} s"), format!("20-120 s, start by {stow} s")];
+    let scan = figure(&hover_at(MISSION, "(sc^an)"), "its start can be put off to ");
+    let stow = figure(&hover_at(MISSION, "(st^ow 3)"), "its start can be put off to ");
+    let expected = [format!("0-119 s, can wait to {scan} s"), format!("20-120 s, can wait to {stow} s")];
     assert_eq!(shown(&view(MISSION), MISSION), expected);
     let larger =
         MISSION.replace("(stow 3)", "(dotimes (i 100) (stow 1))").replace("(minutes 2)", "(minutes 9)");
-    assert!(shown(&view(&larger), &larger).iter().all(|label| !label.contains("start by")));
+    assert!(shown(&view(&larger), &larger).iter().all(|label| !label.contains("can wait to")));
 }

@@ -14,8 +14,9 @@ use crate::vary::{Knob, Probe};
 pub struct Promise {
     /// "It happens by then": the earliest time of which this can be promised. `None` if it cannot be of any.
     pub by: Option<Time>,
-    /// "It does not happen before": the latest time of which this can be promised, for what is ours to start the latest
-    /// guaranteed start. `None` if it can be of every time.
+    /// "It does not happen before": the latest time of which this can be promised. So long can be put off what is ours, in any
+    /// case; if Nature takes her time perhaps longer, but not beyond [`crate::windows::Window::latest`]. `None` if it can be of
+    /// every time.
     pub from: Option<Time>,
 }
 
@@ -51,7 +52,7 @@ pub fn promises(network: &Network, events: &[EventId]) -> Result<Option<Vec<Prom
 ///
 /// # Errors
 /// [`TooLarge`] if the durations add up to more than 64-bit microseconds can hold.
-pub fn latest_start(network: &Network, event: EventId) -> Result<Option<Bound>, TooLarge> {
+pub fn put_off_to(network: &Network, event: EventId) -> Result<Option<Bound>, TooLarge> {
     let mut probe = Probe::new(network);
     if !probe.as_is()? {
         return Ok(None);

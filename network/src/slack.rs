@@ -9,7 +9,7 @@ use crate::check::{Verdict, check};
 use crate::conflict::{Conflict, Part};
 use crate::merge::merge;
 use crate::model::{ContingentLink, Network};
-use crate::stnu::TooLarge;
+use crate::stnu::{TooLarge, add};
 use crate::time::{Bound, Duration};
 use crate::vary::{Dial, INFINITE, Knob, Probe, decide, is_finite};
 
@@ -26,18 +26,9 @@ pub struct Slack {
     pub most: Bound,
     /// How far the value can move to the side on which it becomes harder to keep the rest; `None` without a limit.
     pub room: Option<Duration>,
-}
-
-impl Slack {
-    /// Where the value may lie, in words.
-    pub fn range(&self) -> String {
-        match (self.least.finite(), self.most.finite()) {
-            (Some(least), Some(most)) => format!("{least} to {most} s"),
-            (Some(least), None) => format!("{least} s or more"),
-            (None, Some(most)) => format!("{most} s or less"),
-            (None, None) => "anything".to_string(),
-        }
-    }
+    /// True if a microsecond further the guarantee is lost. Otherwise nothing stops the bound but its own sense: it has met its
+    /// partner, or zero.
+    pub loses: bool,
 }
 
 /// Where each knob can be turned; `None` if the network is not controllable.
@@ -59,7 +50,8 @@ pub fn slack(network: &Network, knobs: &[Knob]) -> Result<Option<Vec<Slack>>, To
             std::mem::swap(&mut least, &mut most);
         }
         let room = dial.distance(hard);
-        Slack { knob: knob.clone(), value: dial.value(dial.here), least, most, room }
+        let loses = is_finite(hard) && hard > dial.hardest.max(dial.finite.0);
+        Slack { knob: knob.clone(), value: dial.value(dial.here), least, most, room, loses }
     };
     Ok(Some(knobs.iter().map(of).collect()))
 }
@@ -77,8 +69,9 @@ pub fn bounds(network: &Network) -> Vec<Knob> {
     requirements.chain(links).filter_map(Knob::of).collect()
 }
 
-/// Why a bound cannot move beyond its slack: the conflict a microsecond further. It is the chain of bounds on which that is
-/// critical. `None` if nothing stops the bound, or only the order of bounds does.
+/// Why a bound cannot move beyond its slack: the conflict a microsecond further, which is the chain of bounds on which that is
+/// critical. Its amounts are those of the network as it is, and add up to what is left, not to a lack. `None` if the
+/// guarantee is not lost there.
 ///
 /// # Errors
 /// [`TooLarge`] if the durations add up to more than 64-bit microseconds can hold.
@@ -88,11 +81,30 @@ pub fn beyond(network: &Network, slack: &Slack) -> Result<Option<Conflict>, TooL
         false => (slack.least, -1),
     };
     let further = end.finite().and_then(|end| end.checked_add(Duration::from_micros(micro)));
+    let further = further.filter(|_| slack.loses);
     let further = further.and_then(|value| slack.knob.at(network, Bound::Finite(value)));
-    Ok(match further.as_ref().map(check).transpose()? {
-        Some(Verdict::Uncontrollable(conflict)) => Some(conflict),
-        Some(Verdict::Controllable) | None => None,
-    })
+    match further.as_ref().map(check).transpose()? {
+        Some(Verdict::Uncontrollable(conflict)) => Ok(Some(as_it_is(conflict, network)?)),
+        Some(Verdict::Controllable) | None => Ok(None),
+    }
+}
+
+/// A conflict of a network with other bounds, with the amounts of this one.
+fn as_it_is(mut conflict: Conflict, network: &Network) -> Result<Conflict, TooLarge> {
+    let mut total = 0;
+    for share in &mut conflict.members {
+        let sign = match share.part {
+            Part::RequirementUpper(_) | Part::LinkLower(_) | Part::DelayMin(_) => 1,
+            Part::RequirementLower(_) | Part::LinkUpper(_) | Part::DelayMax(_) => -1,
+            Part::AfterOrigin | Part::Join(_) => 0,
+        };
+        let times = sign * i64::from(share.times);
+        let amount = share.bound(network).as_micros().checked_mul(times).ok_or(TooLarge)?;
+        total = add(total, amount)?;
+        share.amount = Duration::from_micros(amount);
+    }
+    conflict.total = Duration::from_micros(total);
+    Ok(conflict)
 }
 
 /// How many times as late all news may be.

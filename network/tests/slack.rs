@@ -7,10 +7,12 @@
 mod oracle;
 
 use kirk_network::merge::merge;
-use kirk_network::promise::{latest_start, promises, stretch};
+use kirk_network::promise::{promises, put_off_to, stretch};
 use kirk_network::slack::{Factor, Slack, beyond, bounds, common_factor, slack};
+use kirk_network::windows::windows;
 use kirk_network::{
-    Bound, ContingentLink, Duration, EventId, Network, Part, Requirement, Time, Verdict, check, json,
+    Bound, Conflict, ContingentLink, Duration, EventId, Network, Part, Requirement, Time, Verdict, check,
+    json,
 };
 use oracle::closure;
 use oracle::random::{self, Random, Shape};
@@ -56,7 +58,7 @@ fn slack_is_tight_on_both_sides() {
         let knobs = bounds(network);
         let found = slack(network, &knobs).unwrap().unwrap();
         assert_eq!(found.len(), knobs.len());
-        for Slack { knob, value, least, most, room } in found {
+        for Slack { knob, value, least, most, room, loses } in found {
             let yes = |value: Bound| {
                 // Turned below the shortest delay, the longest takes that along; here all else is as it is.
                 let same_shortest = match (knob.parts()[0], value) {
@@ -88,6 +90,10 @@ fn slack_is_tight_on_both_sides() {
             let distance = |a: Duration, b: Duration| micros((a.as_micros() - b.as_micros()).abs());
             let expected = end.finite().zip(value.finite()).map(|(end, value)| distance(end, value));
             assert_eq!(room, expected, "{}", about());
+            // It loses the guarantee where there is a bound a microsecond further, and not where it is none any more.
+            let further =
+                end.finite().and_then(|end| end.checked_add(micros(if is_harder_if_less { -1 } else { 1 })));
+            assert_eq!(loses, further.and_then(|value| yes(value.into())) == Some(false), "{}", about());
             let far = if is_harder_if_less { least } else { most } == Bound::Infinite;
             if far && matches!(knob.parts()[0], Part::DelayMax(_)) {
                 assert_eq!(yes(Bound::Infinite), Some(true), "{}", about());
@@ -95,6 +101,29 @@ fn slack_is_tight_on_both_sides() {
         }
     });
     assert!(limits > 500, "{limits} limits");
+}
+
+#[test]
+fn what_stops_a_bound_adds_up_to_what_is_left() {
+    let (mut exact, mut all) = (0, 0);
+    controllables(400, &shapes(), |_, network, describe| {
+        for found in slack(network, &bounds(network)).unwrap().unwrap() {
+            let about = || format!("{:?}, {}", found.knob.parts(), describe());
+            let conflict = beyond(network, &found).unwrap();
+            assert_eq!(conflict.is_some(), found.loses, "{}", about());
+            let Some(Conflict { members, total, .. }) = conflict else { continue };
+            let sum: i64 = members.iter().map(|share| share.amount.as_micros()).sum();
+            assert_eq!(sum, total.as_micros(), "{}", about());
+            // The chain is a lack a microsecond further, and may have been one before if it holds only there.
+            let own = members.iter().find(|share| share.part == found.knob.parts()[0]);
+            let times = own.map_or(0, |share| i64::from(share.times));
+            let room = found.room.unwrap().as_micros();
+            assert!(sum <= room * times + times - 1, "{sum} of {times} times {room}: {}", about());
+            all += 1;
+            exact += u32::from(times == 1 && sum == room);
+        }
+    });
+    assert!(all > 300 && exact * 2 > all, "{exact} of {all}");
 }
 
 #[test]
@@ -133,14 +162,18 @@ fn promises_are_kept_and_no_better_ones_can_be() {
     let (mut ours, mut natures) = (0, 0);
     controllables(600, &shapes(), |_, network, describe| {
         let events: Vec<EventId> = network.event_ids().collect();
-        let merged = merge(network);
+        let (merged, windows) = (merge(network), windows(network).unwrap());
         let origin = merged.event_of[network.origin().index()];
         for (event, promise) in events.iter().zip(promises(network, &events).unwrap().unwrap()) {
             if merged.event_of[event.index()] == origin {
                 assert_eq!((promise.by, promise.from), (Some(Time::ZERO), Some(Time::ZERO)));
                 continue;
             }
-            let alone = latest_start(network, *event).unwrap().unwrap().finite();
+            let window = windows[event.index()];
+            let is_possible =
+                |from: Time| window.earliest <= from && window.latest.is_none_or(|latest| from <= latest);
+            assert!(promise.from.is_none_or(is_possible), "{promise:?} in {window:?}, {}", describe());
+            let alone = put_off_to(network, *event).unwrap().unwrap().finite();
             assert_eq!(alone.map(Duration::as_micros), promise.from.map(Time::as_micros));
             let about = || format!("{promise:?} of {}, {}", network.id(*event), describe());
             let bound = |time: i64| Bound::Finite(micros(time));

@@ -15,7 +15,7 @@ const SECOND: Duration = Duration::from_secs(1);
 /// The unit an author writes amounts in; the smallest is the least.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Unit {
-    micros: i64,
+    pub(crate) micros: i64,
     /// The word for it, if it is written.
     word: Option<&'static str>,
 }
@@ -27,10 +27,11 @@ impl Default for Unit {
 }
 
 impl Unit {
-    const SECONDS: Unit = Unit { word: None, micros: SECOND.as_micros() };
+    /// What is meant where no unit is written.
+    pub const SECONDS: Unit = Unit { word: None, micros: SECOND.as_micros() };
 
     /// An amount in words: `90 s`, `1.5 minutes`.
-    pub(crate) fn say(self, amount: Duration) -> String {
+    pub fn say(self, amount: Duration) -> String {
         match (self.word, self.number(amount)) {
             (Some(word), Some(number)) if number == SECOND => {
                 format!("{number} {}", word.strip_suffix('s').unwrap_or(word))
@@ -41,7 +42,7 @@ impl Unit {
     }
 
     /// How many of it an amount is, if that can be written with six digits.
-    fn number(self, amount: Duration) -> Option<Duration> {
+    pub(crate) fn number(self, amount: Duration) -> Option<Duration> {
         let millionths = i128::from(amount.as_micros()) * i128::from(SECOND.as_micros());
         let unit = i128::from(self.micros);
         (millionths % unit == 0).then(|| i64::try_from(millionths / unit).ok().map(Duration::from_micros))?
@@ -62,12 +63,19 @@ fn slice(place: Span, sources: &[Source]) -> &str {
 
 /// The unit of what is written at a place.
 pub(crate) fn unit(place: Span, sources: &[Source]) -> Unit {
+    written_unit(place, sources).unwrap_or(Unit::SECONDS)
+}
+
+/// The same; `None` if no number stands there, or one of which the unit does not matter.
+pub fn written_unit(place: Span, sources: &[Source]) -> Option<Unit> {
+    let is_some = |number: &str| Duration::parse_seconds(number).is_ok_and(|it| it != Duration::ZERO);
     let inner = slice(place, sources).strip_prefix('(').and_then(|text| text.strip_suffix(')'));
     let words: Vec<&str> = inner.unwrap_or_default().split_whitespace().collect();
     match words[..] {
-        [word, number] if Duration::parse_seconds(number).is_ok() => words::unit(&word.to_lowercase())
-            .map_or(Unit::SECONDS, |(word, micros)| Unit { word: Some(word), micros }),
-        _ => Unit::SECONDS,
+        [word, number] if Duration::parse_seconds(number).is_ok() => {
+            words::unit(&word.to_lowercase()).map(|(word, micros)| Unit { word: Some(word), micros })
+        }
+        _ => is_some(slice(place, sources)).then_some(Unit::SECONDS),
     }
 }
 

@@ -157,8 +157,8 @@ impl Origin {
         }
     }
 
-    /// The event at its end.
-    pub(crate) fn end(&self) -> String {
+    /// The event at its end: "the end of `drive`".
+    pub fn end(&self) -> String {
         match &self.subject {
             Subject::Reach(ends) => ends[1].to_string(),
             subject => format!("the end of {subject}"),

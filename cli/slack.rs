@@ -6,7 +6,8 @@ use std::io;
 use kirk_compiler::episode::{Episode, Kind};
 use kirk_compiler::repair::{Unit, what, written_unit};
 use kirk_compiler::{
-    Explain, Origin, Origins, Side, Source, StoryStep, Written, events_of, measurable, usual_unit,
+    Explain, Origin, Origins, Side, Source, Span, StoryStep, Written, events_of, measurable, too_large,
+    usual_unit,
 };
 use kirk_network::merge::{Merged, merge};
 use kirk_network::promise::{promises, stretch};
@@ -30,13 +31,19 @@ pub(crate) fn slack_of(arguments: &SlackOf, common: &Common) -> io::Result<Statu
     let mut input = load_all(&arguments.files, &arguments.selection);
     input.for_one_alone("`kirk slack`");
     let judged = judge(&mut input);
-    let reporter = Reporter::new(&input.sources);
     let file = arguments.files.join(" ");
     let is_yes = judged.as_ref().is_some_and(Judged::is_yes);
     let left = match (&input.network, is_yes) {
-        (Some(network), true) => measure(network, &input).unwrap_or_default(),
-        _ => None,
+        (Some(network), true) => measure(network, &input),
+        _ => Ok(None),
     };
+    let Ok(left) = left else {
+        // What can be decided may be too large to be measured.
+        input.diagnostics.push(too_large(Span::default()));
+        Reporter::new(&input.sources).show(&input.diagnostics, common)?;
+        return Ok(Status::Wrong);
+    };
+    let reporter = Reporter::new(&input.sources);
     let Some(left) = left else {
         reporter.show(&input.diagnostics, common)?;
         let status = if judged.is_some() { Status::No } else { Status::Wrong };
@@ -121,7 +128,8 @@ enum Start {
     /// We do, and can put it off so long in any case.
     Us { put_off_to: Option<Time> },
     /// It is the start of the mission.
-    Start,
+    #[serde(rename = "start")]
+    Mission,
     /// It is an end that Nature decides.
     Nature {
         event: String,
@@ -271,7 +279,7 @@ fn activities(
                 end: origins.contingents[link].end(),
             },
             None if is_ours(start) => Start::Us { put_off_to: promise.from },
-            None => Start::Start,
+            None => Start::Mission,
         };
         let may_take = takes.map(|index| stretch(network, index)).transpose()?.flatten();
         activities.push(Activity { name, start, earliest_start, latest_start, may_take, unit });
@@ -376,7 +384,7 @@ impl Activity {
         };
         let (can_wait, text) = match start {
             Start::Us { put_off_to } => (usual.say_bound(limit(put_off_to.map(time))), name.clone()),
-            Start::Start => (String::new(), format!("{name}, starts with the mission")),
+            Start::Mission => (String::new(), format!("{name}, starts with the mission")),
             Start::Nature { end, .. } => (String::new(), format!("{name}, starts at {end}, Nature decides")),
         };
         let may_take = may_take.map_or(String::new(), |may_take| unit.say_bound(may_take));

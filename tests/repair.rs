@@ -187,7 +187,7 @@ fn patch_takes_a_patch_of_a_file_with_blanks_in_its_name() {
     let patch = stdout(&kirk(&["repair", file.to_str().unwrap(), "--diff"]));
     let run = Command::new("patch").args(["-p0", "-s"]).current_dir("/").stdin(Stdio::piped()).spawn();
     let Ok(mut run) = run else {
-        println!("skipped: there is no `patch` here");
+        // There is no `patch` here.
         return;
     };
     run.stdin.take().unwrap().write_all(patch.as_bytes()).unwrap();

@@ -101,7 +101,7 @@ fn a_team_is_drawn_with_a_lane_for_each_agent() {
 fn what_cannot_be_promised_is_drawn_with_what_does_not_go_together() {
     let picture = drawn(&["show", "examples/rmpl/too-late.rmpl"]);
     assert!(
-        picture.contains("blamed") && picture.contains("That needs 25 s, and 20 s are there."),
+        picture.contains("blamed") && picture.contains("That needs 25 s, and 20 s are there"),
         "{picture}"
     );
 }

@@ -5,7 +5,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod common;
-#[allow(dead_code, reason = "a part of it is used")]
+#[allow(dead_code, unreachable_pub, reason = "a part of it is used, and from here only")]
 #[path = "../../network/tests/oracle/random.rs"]
 mod random;
 
@@ -121,10 +121,9 @@ fn each_amount_of_a_mission_is_where_bisection_finds_it() {
         }
         found += 1;
     }
-    println!("{missions} missions, {found} amounts, {stories} stories of what is missing");
     assert!(
         missions as u64 > cases() / 5 && found as u64 > cases() / 20,
-        "{missions} missions, {found} amounts"
+        "{missions} missions, {found} amounts, {stories} stories of what is missing"
     );
     assert!(stories as u64 > cases() / 20, "{stories} stories");
 }
